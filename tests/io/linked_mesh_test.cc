@@ -1,9 +1,9 @@
 #include "hsdm/io/linked_mesh.hh"
 
-#include "hsdm/core/interruption.hh"
 #include "hsdm/errors.hh"
 #include "hsdm/io/linked_exporter.hh"
 #include "hsdm/io/mesh_writers.hh"
+#include "hsdm/io/zip_archive.hh"
 #include "hsdm/mesh/vertex_normals.hh"
 #include "support/folder.hh"
 #include "support/meshes.hh"
@@ -12,8 +12,10 @@
 #include <catch2/catch.hpp>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <future>
+#include <limits>
 
 #include <sys/stat.h>
 
@@ -125,19 +127,67 @@ TEST_CASE("3MF into a pipe is the file", "[io]") {
     const support::Folder folder;
     const std::string pipe = folder / "pipe";
     REQUIRE(mkfifo(pipe.c_str(), 0600) == 0);
-    const PolygonMesh mesh = support::divided_sphere(70); // more than a stretch
+    const PolygonMesh mesh = support::divided_sphere(80);
+    REQUIRE(mesh.vertex_count() > std::size_t{1} << 15); // more than a stretch
     write_mesh(folder / "one", mesh, MeshFormat::mf3);
     std::future<std::string> read = std::async(std::launch::async, [&] { return support::read_file(pipe); });
     write_mesh(pipe, mesh, MeshFormat::mf3);
     CHECK(read.get() == support::read_file(folder / "one"));
 }
 
-TEST_CASE("3MF that is cancelled leaves no file", "[io][slow]") {
+TEST_CASE("what a member of an archive throws comes through, and no file is left", "[io]") {
     const support::Folder folder;
-    const PolygonMesh mesh = support::divided_sphere(300);
-    int asked = 0;
-    const int goes_on_for = GENERATE(0, 2); // the first time is while the size is found
-    const Interruption interruption([&] { return asked++ < goes_on_for; });
-    CHECK_THROWS_AS(write_mesh(folder / "part.3mf", mesh, MeshFormat::mf3), Cancelled);
-    CHECK(folder.names().empty());
+    std::atomic<int> made = 0;
+    LongText text;
+    text.add("begin");
+    text.add(3, [&](std::string& out, std::size_t begin, std::size_t end) {
+        if (++made > 1) throw Cancelled(); // the first time is for its size
+        out.append(end - begin, 'x');
+    });
+    const std::string path = folder / "a.zip";
+    AtomicFile file(path);
+    CHECK_THROWS_AS(io::write_zip(file, path, {{"a", text}}), Cancelled);
+    CHECK(made == 2);
+    CHECK_THROWS_AS(file.write_at(std::uint64_t{1} << 63, "x"), Error); // which no file has room for
+}
+
+TEST_CASE("an archive that its file has no room for is refused", "[io]") {
+    LongText text;
+    text.add("begin");
+    AtomicFile file("/dev/full");
+    CHECK_THROWS_WITH(io::write_zip(file, "/dev/full", {{"a", text}}), Catch::Contains("cannot write"));
+}
+
+TEST_CASE("a linked mesh of more vertices than are made at once is written in every format", "[io][slow]") {
+    Linked linked = some_linked(support::divided_sphere(110), 0.02, 0.1, 7);
+    REQUIRE(linked.mesh.vertex_count() > std::size_t{1} << 16);
+    support::Random random(8);
+    add_rows(random, linked.mesh);
+    check_all_formats(linked);
+}
+
+TEST_CASE("a linked mesh without facets is one in every format, or refused as any", "[io]") {
+    const support::Folder folder;
+    const PolygonMesh none;
+    const FacetLinks links;
+    const VertexRows rows;
+    for (const MeshFormatInfo& format : mesh_formats()) {
+        INFO(format.name);
+        const LinkedMesh linked{none, links, {}, rows};
+        if (format.format == MeshFormat::glb || format.format == MeshFormat::mf3) {
+            CHECK_THROWS_AS(write_mesh(folder / "b", linked, format.format), Error);
+            continue;
+        }
+        write_mesh(folder / "a", none, format.format);
+        write_mesh(folder / "b", linked, format.format);
+        CHECK(support::read_file(folder / "a") == support::read_file(folder / "b"));
+    }
+}
+
+TEST_CASE("OpenMesh's format refuses what it would number wrongly", "[io]") {
+    const std::size_t most = std::numeric_limits<int>::max();
+    CHECK_NOTHROW(check_sizes("a.om", {most, most, most / 2, 0xffffffff}));
+    CHECK_THROWS_WITH(check_sizes("a.om", {9, 9, most / 2 + 1, 0}), Catch::Contains("half-edges"));
+    CHECK_THROWS_WITH(check_sizes("a.om", {most + 1, 9, 9, 0}), Catch::Contains("write PLY"));
+    CHECK_THROWS_WITH(check_sizes("a.om", {9, 9, 9, std::size_t{1} << 32}), Catch::Contains("4 GiB"));
 }

@@ -3,6 +3,7 @@
 #include "hsdm/core/interruption.hh"
 
 #include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 
 namespace hsdm {
 
@@ -11,6 +12,10 @@ void run_tasks(std::size_t n, void (*task)(void* context, std::size_t i), void* 
         Interruption::poll();
         task(context, i);
     });
+}
+
+void run_isolated(void (*act)(void* context), void* context) {
+    tbb::this_task_arena::isolate([&] { act(context); });
 }
 
 } // namespace hsdm

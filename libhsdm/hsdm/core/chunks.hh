@@ -35,6 +35,18 @@ void for_each_task(std::size_t n, F&& f) {
         const_cast<void*>(static_cast<const void*>(std::addressof(f))));
 }
 
+/// Calls act(context) so that this thread, while it waits for a loop in it, takes no task of another one.
+void run_isolated(void (*act)(void* context), void* context);
+
+/// The same of f(): for loops in a task of a loop, whose other tasks would pile up on this thread's stack, or
+/// under a lock, which another task may want.
+template <class F>
+void isolated(F&& f) {
+    using Function = std::remove_reference_t<F>;
+    run_isolated([](void* function) { (*static_cast<Function*>(function))(); },
+                 const_cast<void*>(static_cast<const void*>(std::addressof(f))));
+}
+
 /// Calls f(begin, end, chunk) for consecutive ranges of [0, n), in parallel.
 template <class F>
 void for_chunks(std::size_t n, std::size_t chunk_size, F&& f) {

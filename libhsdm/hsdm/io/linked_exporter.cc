@@ -170,30 +170,26 @@ int LinkedExporter::get_halfedge_id(FaceHandle f) {
         numbers_.half_edge(mesh_.facets.first[static_cast<std::size_t>(f.idx()) + 1] - 1));
 }
 
-Index LinkedExporter::side_of(HalfedgeHandle h, Index& outside) const {
+LinkedExporter::Side LinkedExporter::side_of(HalfedgeHandle h) const {
     const Index first = numbers_.first_side(static_cast<Index>(h.idx() / 2));
-    const Index side = h.idx() % 2 == 0 ? first : mesh_.links.twin[first];
-    if (side == no_index) outside = first;
-    return side;
+    return {h.idx() % 2 == 0 ? first : mesh_.links.twin[first], first};
 }
 
 int LinkedExporter::get_next_halfedge_id(HalfedgeHandle h) {
-    Index outside = no_index;
-    const Index side = side_of(h, outside);
-    if (side == no_index) return outside_of(mesh_.links.open_in[mesh_.facets.corners[outside]]);
-    return static_cast<int>(numbers_.half_edge(next_side(mesh_.facets, mesh_.links.facet[side], side)));
+    const Side of = side_of(h);
+    if (of.side == no_index) return outside_of(mesh_.links.open_in[mesh_.facets.corners[of.first]]);
+    return static_cast<int>(numbers_.half_edge(next_side(mesh_.facets, mesh_.links.facet[of.side], of.side)));
 }
 
 int LinkedExporter::get_to_vertex_id(HalfedgeHandle h) {
-    Index outside = no_index;
-    const Index side = side_of(h, outside);
-    if (side == no_index) return static_cast<int>(mesh_.facets.corners[outside]);
-    return static_cast<int>(mesh_.facets.corners[next_side(mesh_.facets, mesh_.links.facet[side], side)]);
+    const Side of = side_of(h);
+    if (of.side == no_index) return static_cast<int>(mesh_.facets.corners[of.first]);
+    const Index end = next_side(mesh_.facets, mesh_.links.facet[of.side], of.side);
+    return static_cast<int>(mesh_.facets.corners[end]);
 }
 
 int LinkedExporter::get_face_id(HalfedgeHandle h) {
-    Index outside = no_index;
-    const Index side = side_of(h, outside);
+    const Index side = side_of(h).side;
     return side == no_index ? -1 : static_cast<int>(mesh_.links.facet[side]);
 }
 

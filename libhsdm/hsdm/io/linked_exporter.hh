@@ -11,7 +11,7 @@
 
 namespace hsdm {
 
-/// Edges in the order of their first sides, which are marked, an eighth of a byte a side: side to edge and
+/// Edges in the order of their first sides, which are marked, a fifth of a byte a side: side to edge and
 /// back without an array of either.
 class EdgeNumbers {
 public:
@@ -39,7 +39,8 @@ private:
     mutable Index last_ = 0;           ///< where the last edge was found
 };
 
-/// Rows of vertices that are asked for in ascending order: made by all threads, some thousands at a time.
+/// Rows of vertices that are asked for in ascending order: made by all threads, some thousands at a time, as
+/// often as a format asks for one of their numbers.
 class RowsInOrder {
 public:
     RowsInOrder(const VertexRows& rows, std::size_t count) : rows_(rows), count_(count) {}
@@ -91,8 +92,11 @@ public:
 private:
     void add_properties();
     void add_normals(std::size_t first_column);
-    /// Null outside, where `outside` becomes the side that lies opposite.
-    Index side_of(HalfedgeHandle h, Index& outside) const;
+    struct Side {
+        Index side;      ///< the half-edge's own, or no_index outside
+        Index first = 0; ///< of its edge
+    };
+    Side side_of(HalfedgeHandle h) const;
     /// What lies opposite to a side without twin.
     int outside_of(Index side) const { return static_cast<int>(numbers_.half_edge(side) ^ 1u); }
 

@@ -3,6 +3,7 @@
 #include "hsdm/core/chunks.hh"
 #include "hsdm/io/format_chunks.hh"
 
+#include <algorithm>
 #include <atomic>
 
 namespace hsdm {

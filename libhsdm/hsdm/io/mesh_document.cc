@@ -37,11 +37,12 @@ MeshDocument document_of(MeshFormat format, const MeshCounts& counts, const Vert
 
 void write_document(AtomicFile& file, MeshFormat format, const PolygonMesh& mesh, const VertexRows& rows,
                     bool ascii) {
-    const MeshDocument document = document_of(format, counts_of(mesh), rows_held(format, rows), ascii);
+    const VertexRows held = rows_held(format, rows);
+    const MeshDocument document = document_of(format, counts_of(mesh), held, ascii);
     file.write(document.head);
     for (const MeshDocument::OfVertices& row : document.vertices)
         write_chunks(file, mesh.vertex_count(), [&](std::string& out, std::size_t begin, std::size_t end) {
-            row(out, mesh, rows, begin, end);
+            row.append(out, mesh, held, begin, end);
         });
     write_chunks(file, mesh.facet_count(), [&](std::string& out, std::size_t begin, std::size_t end) {
         document.facets(out, mesh, begin, end);

@@ -15,11 +15,16 @@ struct MeshCounts {
 MeshCounts counts_of(const PolygonMesh& mesh);
 
 struct MeshDocument {
-    /// Appends something of vertices begin .. end - 1.
-    using OfVertices = std::function<void(std::string& out, const PolygonMesh&, const VertexRows&,
-                                          std::size_t begin, std::size_t end)>;
+    /// A row of all vertices.
+    struct OfVertices {
+        /// Appends vertices begin .. end - 1.
+        std::function<void(std::string& out, const PolygonMesh&, const VertexRows&, std::size_t begin,
+                           std::size_t end)>
+            append;
+        bool reads_rows = true; ///< not positions alone
+    };
     std::string head{}, tail{};
-    std::vector<OfVertices> vertices{}; ///< each of all vertices, one row after the other
+    std::vector<OfVertices> vertices{}; ///< one row after the other
     /// Appends facets begin .. end - 1.
     std::function<void(std::string& out, const PolygonMesh&, std::size_t begin, std::size_t end)> facets{};
     bool facets_have_places = false; ///< made of positions, and not of the numbers of vertices

@@ -1,6 +1,6 @@
 #pragma once
-// The writers behind write_mesh whose files are not rows of vertices and facets (mesh_document.hh); each
-// appends a complete document to an open file.
+// The writers behind write_mesh whose files are not rows of vertices and facets (mesh_document.hh), and what
+// writers of all formats check.
 
 #include "hsdm/io/atomic_file.hh"
 #include "hsdm/io/linked_mesh.hh"
@@ -10,12 +10,12 @@ namespace hsdm {
 /// The normals and properties that a mesh has, which must outlive them.
 VertexRows rows_of(const PolygonMesh& mesh);
 
-/// In metres, if the unit is known; relative to a translation where floats are too coarse. Vertices on
-/// creases are there once for each side, so that renderers, which know one normal a vertex, draw the crease
-/// sharp. `path` is for messages.
+/// Appended to an open file. In metres, if the unit is known; relative to a translation where floats are too
+/// coarse. Vertices on creases are there once for each side, so that renderers, which know one normal a
+/// vertex, draw the crease sharp. `path` is for messages.
 void write_glb(AtomicFile& file, const std::string& path, const PolygonMesh& mesh, LengthUnit unit);
 void write_glb(AtomicFile& file, const std::string& path, const LinkedMesh& mesh, LengthUnit unit);
-/// A mesh that is not `closed` is no body.
+/// Appended to an open file. A mesh that is not `closed` is no body.
 void write_3mf(AtomicFile& file, const std::string& path, const PolygonMesh& mesh, bool closed,
                LengthUnit unit);
 
@@ -29,6 +29,12 @@ WrittenMesh precision_of(std::span<const Vec3> positions, const Vec3& shift, Mes
 /// Through a half-edge mesh, into a file of its own. Throws Error if the facets are not 2-manifold.
 void write_polygons_om(const std::string& path, const PolygonMesh& mesh);
 void write_om(const std::string& path, const LinkedMesh& mesh);
+struct OmSizes {
+    std::size_t vertices, facets, edges;
+    std::size_t property; ///< bytes of the largest one
+};
+/// Throws Error for what OpenMesh would number, or tell the size of, wrongly.
+void check_sizes(const std::string& path, const OmSizes& sizes);
 
 /// What writing takes of any kind of mesh, around write(facets, ascii): its facets as they are, or nearer to
 /// the origin, if that is asked for, and whether they are to be text. Throws Error.

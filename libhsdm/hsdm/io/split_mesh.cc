@@ -4,15 +4,9 @@
 #include "hsdm/mesh/split_creases.hh"
 
 #include <algorithm>
-#include <array>
 
 namespace hsdm {
 namespace {
-
-void sort_out(std::vector<Index>& list) {
-    std::sort(list.begin(), list.end());
-    list.erase(std::unique(list.begin(), list.end()), list.end());
-}
 
 /// Where a value stands in an ascending list that has it.
 Index place_of(const std::vector<Index>& list, Index value) {
@@ -30,10 +24,10 @@ Surrounding surrounding(const LinkedMesh& whole, std::span<const Index> vertices
     Surrounding part;
     for (const Index v : vertices)
         whole.for_sides_from(v, [&](Index side) { part.facets.push_back(whole.links.facet[side]); });
-    sort_out(part.facets);
+    sort_unique(part.facets);
     for (const Index f : part.facets)
         for (const Index v : whole.facets.facet(f)) part.vertices.push_back(v);
-    sort_out(part.vertices);
+    sort_unique(part.vertices);
 
     PolygonMesh& mesh = part.mesh;
     for (const Index v : part.vertices) mesh.positions.push_back(whole.facets.positions[v]);
@@ -52,6 +46,13 @@ Surrounding surrounding(const LinkedMesh& whole, std::span<const Index> vertices
         }
     }
     return part;
+}
+
+/// Its loops are within a task.
+PolygonMesh cut(const Surrounding& part) {
+    PolygonMesh split;
+    isolated([&] { split = split_creases(part.mesh); });
+    return split;
 }
 
 /// The normals and properties of vertices begin .. end - 1, which all are in the part; others need none.
@@ -92,7 +93,7 @@ SplitStretches::SplitStretches(const LinkedMesh& mesh) : mesh_(mesh) {
     assign_large(number_, elements() + 1, 0);
     for_chunks(elements(), chunks::quick, [&](std::size_t begin, std::size_t end, std::size_t) {
         const Surrounding part = surrounding(mesh_, range(begin, end));
-        for (const Index own : split_creases(part.mesh).origin)
+        for (const Index own : cut(part).origin)
             if (const Index v = part.vertices[own]; v >= begin && v < end) ++number_[v + 1];
     });
     for_each_in_order(elements(), [&](std::size_t v) { number_[v + 1] += number_[v]; });
@@ -101,7 +102,7 @@ SplitStretches::SplitStretches(const LinkedMesh& mesh) : mesh_(mesh) {
 void SplitStretches::show_vertices(std::size_t begin, std::size_t end, const Visit& visit) const {
     Surrounding part = surrounding(mesh_, range(begin, end));
     fill_rows(mesh_.rows, begin, end, part);
-    const PolygonMesh split = split_creases(part.mesh);
+    const PolygonMesh split = cut(part);
     const std::size_t place =
         begin == end ? 0 : place_of(part.vertices, static_cast<Index>(begin)); // all of them are there
     visit(split, first_from(split, static_cast<Index>(place)),
@@ -112,9 +113,9 @@ void SplitStretches::append_triangles(std::size_t begin, std::size_t end, std::v
     std::vector<Index> corners;
     for (std::size_t f = begin; f < end; ++f)
         for (const Index v : mesh_.facets.facet(f)) corners.push_back(v);
-    sort_out(corners);
+    sort_unique(corners);
     const Surrounding part = surrounding(mesh_, corners);
-    const PolygonMesh split = split_creases(part.mesh);
+    const PolygonMesh split = cut(part);
     const auto number = [&](Index v) {
         const Index own = split.origin[v];
         return static_cast<Index>(number_[part.vertices[own]] + (v - first_from(split, own)));

@@ -20,7 +20,6 @@ namespace {
 struct FileOfAll {
     std::string name;        ///< of the temporary; empty: the first rank writes alone
     std::uint64_t inode = 0; ///< which tells it from one of that name on another machine
-    MeshFormat format = MeshFormat::ply;
     bool ascii = false, normals = false;
     MeshCounts counts{};
 };
@@ -28,15 +27,14 @@ struct FileOfAll {
 FileOfAll told_by_first(const FileOfAll& own, Ranks& ranks) {
     Ranks::Bytes bytes;
     put_text(own.name, bytes);
-    put(own.inode, bytes), put(own.format, bytes), put(own.ascii, bytes), put(own.normals, bytes);
+    put(own.inode, bytes), put(own.ascii, bytes), put(own.normals, bytes);
     put(own.counts, bytes);
     const Ranks::Bytes told = ranks.of_first(std::move(bytes));
     ByteReader reader(told);
     FileOfAll file;
     file.name = reader.take_text();
     file.inode = reader.take<std::uint64_t>();
-    file.format = reader.take<MeshFormat>(), file.ascii = reader.take<bool>(),
-    file.normals = reader.take<bool>();
+    file.ascii = reader.take<bool>(), file.normals = reader.take<bool>();
     file.counts = reader.take<MeshCounts>();
     return file;
 }
@@ -130,13 +128,13 @@ std::uint64_t write_stretches(StretchWriter& writer, const MeshDocument& documen
         writer.write_elements(
             counts.vertices,
             [&](std::size_t begin, std::size_t end) {
-                return stretch_of_vertices(mesh, rows, shift, begin, end);
+                return stretch_of_vertices(mesh, row.reads_rows ? rows : VertexRows(), shift, begin, end);
             },
             [&](const PolygonMesh& stretch) {
                 const VertexRows own = rows_of(stretch);
                 return formatted(stretch.vertex_count(),
                                  [&](std::string& out, std::size_t begin, std::size_t end) {
-                                     row(out, stretch, own, begin, end);
+                                     row.append(out, stretch, own, begin, end);
                                  });
             });
     std::optional<PlacedStretches> placed;
@@ -171,7 +169,7 @@ WrittenMesh write_mesh_by_ranks(const std::string& path, const LinkedMesh& linke
         check_consistent(path, mesh);
         const Vec3 shift = options.recentre ? recentring_shift(mesh.positions) : Vec3(0, 0, 0);
         written = precision_of(mesh.positions, shift, format, options.ascii);
-        own.format = format, own.ascii = options.ascii || written.text_for_precision;
+        own.ascii = options.ascii || written.text_for_precision;
         own.normals = rows_held(format, linked.rows).normals, own.counts = counts_of(mesh);
         if (find_target(path).kind == OutputTarget::Kind::file) { // others cannot be opened twice
             temporary.emplace(path);
@@ -186,11 +184,10 @@ WrittenMesh write_mesh_by_ranks(const std::string& path, const LinkedMesh& linke
         return alone();
     }
     StretchWriter writer(*shared, path, ranks);
-    VertexRows told = rows_held(file.format, linked.rows);
+    VertexRows told = rows_held(format, linked.rows);
     told.normals = file.normals; // which rows there are is the same for all
-    const std::uint64_t size =
-        write_stretches(writer, document_of(file.format, file.counts, told, file.ascii), file.counts, mesh,
-                        told, written.shift);
+    const std::uint64_t size = write_stretches(writer, document_of(format, file.counts, told, file.ascii),
+                                               file.counts, mesh, told, written.shift);
     if (ranks.is_first()) temporary->check_size(size), temporary->commit();
     written.by_all_ranks = true;
     return written;

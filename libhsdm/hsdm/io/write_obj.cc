@@ -27,8 +27,8 @@ void append_normals(std::string& out, const PolygonMesh&, const VertexRows& rows
 
 MeshDocument obj_document(bool normals) {
     MeshDocument document;
-    document.vertices.emplace_back(append_positions);
-    if (normals) document.vertices.emplace_back(append_normals);
+    document.vertices.push_back({append_positions, false});
+    if (normals) document.vertices.push_back({append_normals});
     document.facets = [normals](std::string& out, const PolygonMesh& mesh, std::size_t begin,
                                 std::size_t end) {
         for (std::size_t f = begin; f < end; ++f) {

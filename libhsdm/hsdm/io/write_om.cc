@@ -1,5 +1,7 @@
 #include "hsdm/io/write_om.hh"
 
+#include "hsdm/core/chunks.hh"
+#include "hsdm/core/interruption.hh"
 #include "hsdm/errors.hh"
 #include "hsdm/io/linked_exporter.hh"
 #include "hsdm/io/mesh_writers.hh"
@@ -8,8 +10,10 @@
 #include <OpenMesh/Core/IO/MeshIO.hh>
 #include <OpenMesh/Core/System/omstream.hh>
 
+#include <algorithm>
 #include <array>
 #include <exception>
+#include <limits>
 #include <mutex>
 #include <ostream>
 #include <streambuf>
@@ -55,7 +59,10 @@ protected:
     }
     int sync() override {
         try {
-            if (!failure_) file_.write({pbase(), static_cast<std::size_t>(pptr() - pbase())});
+            if (!failure_) {
+                Interruption::poll();
+                file_.write({pbase(), static_cast<std::size_t>(pptr() - pbase())});
+            }
         } catch (...) {
             failure_ = std::current_exception();
         }
@@ -69,7 +76,16 @@ private:
     std::exception_ptr failure_;
 };
 
+void check_sizes(const std::string& path, OpenMesh::IO::BaseExporter& exporter) {
+    OmSizes sizes{exporter.n_vertices(), exporter.n_faces(), exporter.n_edges(), 0};
+    const OpenMesh::BaseKernel& kernel = *exporter.kernel();
+    for (auto it = kernel.vprops_begin(); it != kernel.vprops_end(); ++it)
+        if (*it && (*it)->persistent()) sizes.property = std::max(sizes.property, (*it)->size_of());
+    check_sizes(path, sizes);
+}
+
 void write_om(const std::string& path, OpenMesh::IO::BaseExporter& exporter) {
+    check_sizes(path, exporter);
     using OpenMesh::IO::Options;
     Options options(Options::Binary);
     options += Options::VertexNormal;
@@ -82,7 +98,9 @@ void write_om(const std::string& path, OpenMesh::IO::BaseExporter& exporter) {
         static std::mutex one_at_a_time; // the log is the process's
         const std::lock_guard held(one_at_a_time);
         const QuietLog quiet;
-        return OpenMesh::IO::IOManager().write(stream, ".om", exporter, options);
+        bool is_written = false;
+        isolated([&] { is_written = OpenMesh::IO::IOManager().write(stream, ".om", exporter, options); });
+        return is_written;
     }();
     buffer.finish();
     if (!written) throw Error(path, "OpenMesh could not write this mesh as .om; write OFF or PLY instead");
@@ -90,6 +108,16 @@ void write_om(const std::string& path, OpenMesh::IO::BaseExporter& exporter) {
 }
 
 } // namespace
+
+void check_sizes(const std::string& path, const OmSizes& sizes) {
+    constexpr std::size_t most = std::numeric_limits<int>::max();
+    if (std::max({sizes.vertices, sizes.facets, 2 * sizes.edges}) > most)
+        throw Error(path, "cannot write: " + std::to_string(2 * sizes.edges)
+                              + " half-edges, more than OpenMesh can number; write PLY");
+    if (sizes.property > std::numeric_limits<std::uint32_t>::max())
+        throw Error(path, "cannot write: a property of " + std::to_string(sizes.property)
+                              + " bytes, of which .om holds less than 4 GiB; write PLY, or --plain");
+}
 
 void write_om(const std::string& path, const PolyMesh& mesh) {
     OpenMesh::IO::ExporterT<PolyMesh> exporter(mesh);

@@ -55,25 +55,25 @@ void put_vertices(const PolygonMesh& mesh, const VertexRows& rows, std::size_t b
 }
 
 void describe_ascii(MeshDocument& document) {
-    document.vertices.emplace_back([](std::string& out, const PolygonMesh& mesh, const VertexRows& rows,
-                                      std::size_t begin, std::size_t end) {
+    document.vertices.push_back({[](std::string& out, const PolygonMesh& mesh, const VertexRows& rows,
+                                    std::size_t begin, std::size_t end) {
         const auto put = [&](auto value) {
             append_number(out, value);
             out += ' ';
         };
         put_vertices(mesh, rows, begin, end, put, [&] { out.back() = '\n'; });
-    });
+    }});
     document.facets = [](std::string& out, const PolygonMesh& mesh, std::size_t begin, std::size_t end) {
         for (std::size_t f = begin; f < end; ++f) append_polygon(out, mesh.facet(f));
     };
 }
 
 void describe_binary(MeshDocument& document, bool short_counts) {
-    document.vertices.emplace_back([](std::string& out, const PolygonMesh& mesh, const VertexRows& rows,
-                                      std::size_t begin, std::size_t end) {
+    document.vertices.push_back({[](std::string& out, const PolygonMesh& mesh, const VertexRows& rows,
+                                    std::size_t begin, std::size_t end) {
         put_vertices(
             mesh, rows, begin, end, [&](auto value) { append_bytes(out, value); }, [] {});
-    });
+    }});
     document.facets = [short_counts](std::string& out, const PolygonMesh& mesh, std::size_t begin,
                                      std::size_t end) {
         for (std::size_t f = begin; f < end; ++f) {

@@ -3,10 +3,12 @@
 #include "hsdm/io/libzip_functions.hh"
 #include "hsdm/io/zip_archive.hh"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <deque>
 #include <exception>
+#include <memory>
 
 namespace hsdm::io {
 namespace {
