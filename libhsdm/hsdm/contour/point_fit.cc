@@ -36,9 +36,10 @@ public:
 
     std::span<const std::array<Index, 3>> corners() const { return {corners_.data(), size_}; }
     std::size_t eights() const { return chunk_count(size_, EightTriangles::size); }
-    /// Appends for each eight the bits of the triangles that have the foot of p inside.
-    void add_feet_inside(const Vec3& p, std::vector<unsigned>& within) const {
-        for (std::size_t e = 0; e < eights(); ++e) within.push_back(lanes_.feet_inside(eights_[e], p));
+    /// Sets for each eight the bits of the triangles that have the foot of p inside; returns what follows.
+    unsigned* set_feet_inside(const Vec3& p, unsigned* within) const {
+        for (std::size_t e = 0; e < eights(); ++e) *within++ = lanes_.feet_inside(eights_[e], p);
+        return within;
     }
     NearestOfTriangle foot(std::size_t triangle, const Vec3& p) const {
         return eights_[triangle / EightTriangles::size].foot(triangle % EightTriangles::size, p);
@@ -162,9 +163,11 @@ PointFit::Measure PointFit::measure(const std::vector<Vec3>& positions) const {
             around.prepare();
             const std::size_t first = level_.first_point[x], last = level_.first_point[x + 1];
             const std::size_t stride = sample_stride(last - first);
-            inside.clear(); // of all points first: what follows waits for it where branches are guessed wrong
+            // Of all points first: what follows waits for it where branches are guessed wrong.
+            inside.resize(std::max(inside.size(), around.eights() * chunk_count(last - first, stride)));
+            unsigned* end_of_inside = inside.data();
             for (std::size_t i = first; i < last; i += stride)
-                around.add_feet_inside(octree_.positions[i], inside);
+                end_of_inside = around.set_feet_inside(octree_.positions[i], end_of_inside);
             const unsigned* of_point = inside.data();
             double misfit = 0, farthest = 0;
             for (std::size_t i = first; i < last; i += stride, of_point += around.eights()) {
