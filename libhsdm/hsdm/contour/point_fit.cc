@@ -143,9 +143,11 @@ PointFit::Measure PointFit::measure(const std::vector<Vec3>& positions) const {
     Measure result{large_vector<double>(level_.size(), 0), {}, large_vector<Heights>(duals_.size())};
     std::vector<double> farthest_of = large_vector<double>(level_.size(), 0);
     // Contributions to vertices in other blocks' voxels are added afterwards, in the order of the blocks:
-    // places in space, so that sums come out the same where only part of the level is known.
+    // places in space, so that sums come out the same where only part of the level is known. They are kept by
+    // ranges of vertices, to which they are added in parallel.
     const std::vector<Index> blocks = blocks_of(level_);
-    std::vector<std::vector<Foreign>> foreign(blocks.size() - 1);
+    std::vector<std::array<std::vector<Foreign>, ranges>> foreign(blocks.size() - 1);
+    const auto per_range = static_cast<Index>(chunk_count(duals_.size(), ranges));
     const Vec3* const upward = upward_.data();
     const Index* const voxel_of = vertices_.voxel.data();
     Heights* const heights = result.heights.data();
@@ -187,17 +189,17 @@ PointFit::Measure PointFit::measure(const std::vector<Vec3>& positions) const {
                     if (voxel >= begin && voxel < end)
                         heights[v].add(foot.nearest.weights[k], height);
                     else
-                        foreign[chunk].push_back({v, foot.nearest.weights[k], height});
+                        foreign[chunk][v / per_range].push_back({v, foot.nearest.weights[k], height});
                 }
             }
             result.misfit[x] = misfit;
             farthest_of[x] = farthest;
         }
     });
-    for (const std::vector<Foreign>& share : foreign) {
-        Interruption::poll();
-        for (const Foreign& f : share) result.heights[f.dual].add(f.weight, f.height);
-    }
+    for_each_task(ranges, [&](std::size_t range) {
+        for (const auto& of_block : foreign)
+            for (const Foreign& f : of_block[range]) heights[f.dual].add(f.weight, f.height);
+    });
     result.standing_out = standing_out(farthest_of, result.misfit);
     return result;
 }
