@@ -127,11 +127,11 @@ void remove_duplicates(PolygonMesh& mesh, ManifoldCounts& counts) {
         // rare.
         for (std::size_t i = begin; end - i > 1;) {
             const auto first = keys.begin() + static_cast<std::ptrdiff_t>(i);
-            const auto mid =
-                std::stable_partition(first, keys.begin() + static_cast<std::ptrdiff_t>(end),
-                                      [&, leader = first->index](const CodeIndex& key) {
-                                          return have_same_vertices(mesh.facet(leader), mesh.facet(key.index));
-                                      });
+            const auto mid = std::stable_partition(first, keys.begin() + static_cast<std::ptrdiff_t>(end),
+                                                   [&, leader = first->index](const CodeIndex& key) {
+                                                       return have_same_vertices(mesh.facet(leader),
+                                                                                 mesh.facet(key.index));
+                                                   });
             if (mid - first > 1) thin_out(mesh, {first, mid}, removed, counts);
             i += static_cast<std::size_t>(mid - first);
         }
