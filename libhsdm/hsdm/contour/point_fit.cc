@@ -19,14 +19,18 @@ class Around {
 public:
     void clear() { size_ = 0; }
     bool empty() const { return size_ == 0; }
-    void add(const std::vector<Vec3>& at, const std::array<Index, 3>& triangle) {
+    /// Of a facet that begins at a vertex.
+    void add(const std::vector<Vec3>& at, Index dual, Index next, Index across, Index before) {
         if (size_ == corners_.size()) {
             corners_.resize(size_ + EightTriangles::size);
             eights_.emplace_back();
         }
-        const std::size_t lane = size_ % EightTriangles::size;
-        eights_[size_ / EightTriangles::size].put(lane, at[triangle[0]], at[triangle[1]], at[triangle[2]]);
-        corners_[size_++] = triangle;
+        const std::size_t lane = size_ % EightTriangles::size; // an even one
+        EightTriangles& eight = eights_[size_ / EightTriangles::size];
+        eight.put(lane, at[dual], at[next], at[across]);
+        eight.put(lane + 1, at[dual], at[across], at[before]);
+        corners_[size_++] = {dual, next, across};
+        corners_[size_++] = {dual, across, before};
     }
     void prepare() {
         if (const std::size_t lane = size_ % EightTriangles::size; lane > 0)
@@ -61,9 +65,7 @@ struct Foot {
 /// Appends the facets round a vertex.
 void list_facets(Index dual, const DualVertices& duals, const std::vector<Vec3>& at, Around& around) {
     duals.for_each_corner(dual, [&](FacetCorner corner) {
-        const Index across = duals.from(corner.opposite());
-        around.add(at, {dual, duals.to(corner), across});
-        around.add(at, {dual, across, duals.from(corner.previous())});
+        around.add(at, dual, duals.to(corner), duals.from(corner.opposite()), duals.from(corner.previous()));
     });
 }
 
