@@ -79,12 +79,13 @@ struct Candidates {
         id.resize(size);
         for (std::vector<float>* axis : {&x, &y, &z})
             if (axis->size() < size + NearLanes::most) axis->resize(2 * size + NearLanes::most);
-        for (std::size_t c = old; c < size; ++c) {
-            const Index i = id[c] = begin + static_cast<Index>(c - old);
-            const Vec3 p = octree.positions[i] - base;
-            x[c] = static_cast<float>(p[0]);
-            y[c] = static_cast<float>(p[1]);
-            z[c] = static_cast<float>(p[2]);
+        const std::array<float*, 3> to{x.data() + old, y.data() + old, z.data() + old};
+        const Vec3* const from = octree.positions.data() + begin;
+        const Vec3 origin = base; // of its own, which no value written can be
+        for (Index c = 0; c < end - begin; ++c) {
+            id[old + c] = begin + c;
+            for (unsigned axis = 0; axis < 3; ++axis)
+                to[axis][c] = static_cast<float>(from[c][axis] - origin[axis]);
         }
     }
 };
