@@ -19,14 +19,18 @@ class Around {
 public:
     void clear() { size_ = 0; }
     bool empty() const { return size_ == 0; }
-    void add(const std::vector<Vec3>& at, const std::array<Index, 3>& triangle) {
+    /// Of a facet that begins at a vertex.
+    void add(const std::vector<Vec3>& at, Index dual, Index next, Index across, Index before) {
         if (size_ == corners_.size()) {
             corners_.resize(size_ + EightTriangles::size);
             eights_.emplace_back();
         }
-        const std::size_t lane = size_ % EightTriangles::size;
-        eights_[size_ / EightTriangles::size].put(lane, at[triangle[0]], at[triangle[1]], at[triangle[2]]);
-        corners_[size_++] = triangle;
+        const std::size_t lane = size_ % EightTriangles::size; // an even one
+        EightTriangles& eight = eights_[size_ / EightTriangles::size];
+        eight.put(lane, at[dual], at[next], at[across]);
+        eight.put(lane + 1, at[dual], at[across], at[before]);
+        corners_[size_++] = {dual, next, across};
+        corners_[size_++] = {dual, across, before};
     }
     void prepare() {
         if (const std::size_t lane = size_ % EightTriangles::size; lane > 0)
@@ -36,9 +40,10 @@ public:
 
     std::span<const std::array<Index, 3>> corners() const { return {corners_.data(), size_}; }
     std::size_t eights() const { return chunk_count(size_, EightTriangles::size); }
-    /// Appends for each eight the bits of the triangles that have the foot of p inside.
-    void add_feet_inside(const Vec3& p, std::vector<unsigned>& within) const {
-        for (std::size_t e = 0; e < eights(); ++e) within.push_back(lanes_.feet_inside(eights_[e], p));
+    /// Sets for each eight the bits of the triangles that have the foot of p inside; returns what follows.
+    unsigned* set_feet_inside(const Vec3& p, unsigned* within) const {
+        for (std::size_t e = 0; e < eights(); ++e) *within++ = lanes_.feet_inside(eights_[e], p);
+        return within;
     }
     NearestOfTriangle foot(std::size_t triangle, const Vec3& p) const {
         return eights_[triangle / EightTriangles::size].foot(triangle % EightTriangles::size, p);
@@ -60,9 +65,7 @@ struct Foot {
 /// Appends the facets round a vertex.
 void list_facets(Index dual, const DualVertices& duals, const std::vector<Vec3>& at, Around& around) {
     duals.for_each_corner(dual, [&](FacetCorner corner) {
-        const Index across = duals.from(corner.opposite());
-        around.add(at, {dual, duals.to(corner), across});
-        around.add(at, {dual, across, duals.from(corner.previous())});
+        around.add(at, dual, duals.to(corner), duals.from(corner.opposite()), duals.from(corner.previous()));
     });
 }
 
@@ -142,9 +145,11 @@ PointFit::Measure PointFit::measure(const std::vector<Vec3>& positions) const {
     Measure result{large_vector<double>(level_.size(), 0), {}, large_vector<Heights>(duals_.size())};
     std::vector<double> farthest_of = large_vector<double>(level_.size(), 0);
     // Contributions to vertices in other blocks' voxels are added afterwards, in the order of the blocks:
-    // places in space, so that sums come out the same where only part of the level is known.
+    // places in space, so that sums come out the same where only part of the level is known. They are kept by
+    // ranges of vertices, to which they are added in parallel.
     const std::vector<Index> blocks = blocks_of(level_);
-    std::vector<std::vector<Foreign>> foreign(blocks.size() - 1);
+    std::vector<std::array<std::vector<Foreign>, ranges>> foreign(blocks.size() - 1);
+    const auto per_range = static_cast<Index>(chunk_count(duals_.size(), ranges));
     const Vec3* const upward = upward_.data();
     const Index* const voxel_of = vertices_.voxel.data();
     Heights* const heights = result.heights.data();
@@ -162,9 +167,11 @@ PointFit::Measure PointFit::measure(const std::vector<Vec3>& positions) const {
             around.prepare();
             const std::size_t first = level_.first_point[x], last = level_.first_point[x + 1];
             const std::size_t stride = sample_stride(last - first);
-            inside.clear(); // of all points first: what follows waits for it where branches are guessed wrong
+            // Of all points first: what follows waits for it where branches are guessed wrong.
+            inside.resize(std::max(inside.size(), around.eights() * chunk_count(last - first, stride)));
+            unsigned* end_of_inside = inside.data();
             for (std::size_t i = first; i < last; i += stride)
-                around.add_feet_inside(octree_.positions[i], inside);
+                end_of_inside = around.set_feet_inside(octree_.positions[i], end_of_inside);
             const unsigned* of_point = inside.data();
             double misfit = 0, farthest = 0;
             for (std::size_t i = first; i < last; i += stride, of_point += around.eights()) {
@@ -184,17 +191,17 @@ PointFit::Measure PointFit::measure(const std::vector<Vec3>& positions) const {
                     if (voxel >= begin && voxel < end)
                         heights[v].add(foot.nearest.weights[k], height);
                     else
-                        foreign[chunk].push_back({v, foot.nearest.weights[k], height});
+                        foreign[chunk][v / per_range].push_back({v, foot.nearest.weights[k], height});
                 }
             }
             result.misfit[x] = misfit;
             farthest_of[x] = farthest;
         }
     });
-    for (const std::vector<Foreign>& share : foreign) {
-        Interruption::poll();
-        for (const Foreign& f : share) result.heights[f.dual].add(f.weight, f.height);
-    }
+    for_each_task(ranges, [&](std::size_t range) {
+        for (const auto& of_block : foreign)
+            for (const Foreign& f : of_block[range]) heights[f.dual].add(f.weight, f.height);
+    });
     result.standing_out = standing_out(farthest_of, result.misfit);
     return result;
 }

@@ -49,6 +49,7 @@ public:
     std::vector<double> rises(const std::vector<Heights>& heights) const;
 
 private:
+    static constexpr std::size_t ranges = 16;
     struct Foreign {
         Index dual;
         double weight, height;

@@ -56,9 +56,6 @@ public:
         while (blocks_[slot].first != 0 && blocks_[slot].number != number) slot = after(slot);
         return blocks_[slot];
     }
-    void prefetch(MortonCode code) const {
-        if (!blocks_.empty()) __builtin_prefetch(&blocks_[slot_of(code / cells)]);
-    }
 
 private:
     static constexpr std::size_t siblings = 8;

@@ -33,7 +33,7 @@ template <class Mesh>
 FeatureCounts FeatureClassifierT<Mesh>::classify() {
     if (!is_initialized_) throw std::logic_error("FeatureClassifierT: classify() called before initialize()");
     const std::vector<Vec3> areas = facet_area_vectors(mesh_);
-    std::vector<Vec3> normals(areas.size());
+    std::vector<Vec3> normals = unwritten_vector<Vec3>(areas.size());
     for_each_handle<OpenMesh::FaceHandle>(normals.size(), [&](OpenMesh::FaceHandle f) {
         normals[index_of(f)] = unit_or_zero(areas[index_of(f)]);
     });
@@ -82,12 +82,14 @@ std::vector<unsigned char> FeatureClassifierT<Mesh>::facets_near_candidates() co
         near[index_of(f)] = 1;
         to.push_back(f);
     };
-    for (std::size_t i = 0; i < mesh_.n_edges(); ++i) {
-        const OpenMesh::EdgeHandle e(static_cast<int>(i));
-        const auto& status = mesh_.status(e);
-        if (status.deleted() || status.locked() || !status.feature()) continue;
-        for (unsigned side : {0u, 1u}) add(mesh_.face_handle(mesh_.halfedge_handle(e, side)), ring);
-    }
+    const std::vector<Index> candidates = indices_where(mesh_.n_edges(), chunks::light, [&](Index e) {
+        const auto& status = mesh_.status(OpenMesh::EdgeHandle(static_cast<int>(e)));
+        return !status.deleted() && !status.locked() && status.feature();
+    });
+    for (const Index e : candidates)
+        for (unsigned side : {0u, 1u})
+            add(mesh_.face_handle(mesh_.halfedge_handle(OpenMesh::EdgeHandle(static_cast<int>(e)), side)),
+                ring);
     if (ring.empty()) return {};
     for (int round = 1; round < options_.confirmation_rounds; ++round, ring.swap(next)) {
         next.clear();
@@ -121,11 +123,15 @@ void FeatureClassifierT<Mesh>::confirm(const std::vector<Vec3>& areas,
 
 template <class Mesh>
 std::size_t FeatureClassifierT<Mesh>::count_sharp_edges() const {
-    std::size_t count = 0;
-    for (std::size_t e = 0; e < mesh_.n_edges(); ++e) {
-        const auto& status = mesh_.status(OpenMesh::EdgeHandle(static_cast<int>(e)));
-        count += !status.deleted() && status.feature();
-    }
+    std::atomic<std::size_t> count = 0;
+    for_chunks(mesh_.n_edges(), chunks::light, [&](std::size_t begin, std::size_t end, std::size_t) {
+        std::size_t here = 0;
+        for (; begin != end; ++begin) {
+            const auto& status = mesh_.status(OpenMesh::EdgeHandle(static_cast<int>(begin)));
+            here += !status.deleted() && status.feature();
+        }
+        count += here;
+    });
     return count;
 }
 

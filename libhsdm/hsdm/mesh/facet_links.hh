@@ -3,7 +3,9 @@
 
 #include "hsdm/polygon_mesh.hh"
 
+#include <algorithm>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace hsdm {
@@ -31,6 +33,14 @@ inline Index next_side(const PolygonMesh& facets, Index facet, Index c) {
 }
 inline Index previous_side(const PolygonMesh& facets, Index facet, Index c) {
     return c == facets.first[facet] ? facets.first[facet + 1] - 1 : c - 1;
+}
+
+/// Do two facets have the same vertices? `first`: which of a's, if it has so many, is looked for first,
+/// because the others are more likely to be shared by neighbours.
+inline bool have_same_vertices(std::span<const Index> a, std::span<const Index> b, std::size_t first = 0) {
+    const auto b_has = [b](Index v) { return std::find(b.begin(), b.end(), v) != b.end(); };
+    return a.size() == b.size() && (first >= a.size() || b_has(a[first]))
+           && std::all_of(a.begin(), a.end(), b_has);
 }
 
 } // namespace hsdm

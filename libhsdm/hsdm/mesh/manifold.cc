@@ -82,12 +82,6 @@ std::uint64_t vertex_set_hash(std::span<const Index> facet) {
     return sum >> 32;
 }
 
-bool same_vertices(std::span<const Index> a, std::span<const Index> b) {
-    return a.size() == b.size() && std::all_of(a.begin(), a.end(), [&](Index v) {
-               return std::find(b.begin(), b.end(), v) != b.end();
-           });
-}
-
 /// 1 if b is a, -1 if b is a reversed, 0 if b visits the same vertices in another order.
 int relative_orientation(std::span<const Index> a, std::span<const Index> b) {
     const std::size_t n = a.size();
@@ -133,11 +127,11 @@ void remove_duplicates(PolygonMesh& mesh, ManifoldCounts& counts) {
         // rare.
         for (std::size_t i = begin; end - i > 1;) {
             const auto first = keys.begin() + static_cast<std::ptrdiff_t>(i);
-            const auto mid =
-                std::stable_partition(first, keys.begin() + static_cast<std::ptrdiff_t>(end),
-                                      [&, leader = first->index](const CodeIndex& key) {
-                                          return same_vertices(mesh.facet(leader), mesh.facet(key.index));
-                                      });
+            const auto mid = std::stable_partition(first, keys.begin() + static_cast<std::ptrdiff_t>(end),
+                                                   [&, leader = first->index](const CodeIndex& key) {
+                                                       return have_same_vertices(mesh.facet(leader),
+                                                                                 mesh.facet(key.index));
+                                                   });
             if (mid - first > 1) thin_out(mesh, {first, mid}, removed, counts);
             i += static_cast<std::size_t>(mid - first);
         }
@@ -447,7 +441,7 @@ bool is_manifold(const PolygonMesh& mesh, const FacetLinks& links) {
         Index side = begin;
         do {
             const Index g = links.facet[side];
-            if (g != f && same_vertices(mesh.facet(f), mesh.facet(g)))
+            if (g != f && have_same_vertices(mesh.facet(f), mesh.facet(g), 2))
                 doubled.store(true, std::memory_order_relaxed);
             side = links.twin[previous_side(mesh, g, side)];
         } while (side != no_index && side != begin);

@@ -23,9 +23,6 @@ namespace {
 /// grow with their square for clouds whose parts lie so far apart that each is in few voxels.
 constexpr Index crowd = 256;
 
-/// Stands for voxels outside the cube; no code has this bit.
-constexpr MortonCode beyond = MortonCode{1} << 63;
-
 /// A run of points in one voxel.
 struct Leaf {
     Index begin, end;
@@ -79,12 +76,13 @@ struct Candidates {
         id.resize(size);
         for (std::vector<float>* axis : {&x, &y, &z})
             if (axis->size() < size + NearLanes::most) axis->resize(2 * size + NearLanes::most);
-        for (std::size_t c = old; c < size; ++c) {
-            const Index i = id[c] = begin + static_cast<Index>(c - old);
-            const Vec3 p = octree.positions[i] - base;
-            x[c] = static_cast<float>(p[0]);
-            y[c] = static_cast<float>(p[1]);
-            z[c] = static_cast<float>(p[2]);
+        const std::array<float*, 3> to{x.data() + old, y.data() + old, z.data() + old};
+        const Vec3* const from = octree.positions.data() + begin;
+        const Vec3 origin = base; // of its own, which no value written can be
+        for (Index c = 0; c < end - begin; ++c) {
+            id[old + c] = begin + c;
+            for (unsigned axis = 0; axis < 3; ++axis)
+                to[axis][c] = static_cast<float>(from[c][axis] - origin[axis]);
         }
     }
 };
@@ -254,31 +252,18 @@ private:
     /// The voxels around one, and that itself; returns how many points they hold.
     std::size_t around(MortonCode code, int level, std::array<Index, 27>& voxels, std::size_t& count) const {
         const OctreeLevel& grid = levels_[static_cast<std::size_t>(level)];
-        const VoxelCoord centre = morton_decode(code);
-        const std::int32_t side = std::int32_t{1} << level;
-        std::array<std::array<MortonCode, 3>, 3> part; // per axis and step, its bits of the code
-        for (unsigned axis = 0; axis < 3; ++axis)
-            for (std::size_t step = 0; step < 3; ++step) { // to the voxel before, none, to that after
-                const std::int32_t c = centre[axis] + static_cast<std::int32_t>(step) - 1;
-                part[axis][step] =
-                    c < 0 || c >= side ? beyond : detail::spread_bits(static_cast<std::uint64_t>(c)) << axis;
-            }
-        std::array<MortonCode, 27> codes;
-        std::size_t asked = 0;
-        for (MortonCode z : part[2])
-            for (MortonCode y : part[1])
-                for (MortonCode x : part[0]) {
-                    codes[asked] = x | y | z;
-                    if (codes[asked] < beyond) grid.prefetch(codes[asked++]);
-                }
+        VoxelsAround beside(grid, code);
         std::size_t points = 0;
         count = 0;
-        for (std::size_t k = 0; k < asked; ++k) {
-            const Index v = grid.find(codes[k]);
-            if (v == no_index) continue;
-            voxels[count++] = v;
-            points += grid.first_point[v + 1] - grid.first_point[v];
-        }
+        VoxelCoord step;
+        for (step[2] = -1; step[2] <= 1; ++step[2])
+            for (step[1] = -1; step[1] <= 1; ++step[1])
+                for (step[0] = -1; step[0] <= 1; ++step[0]) {
+                    const Index v = beside.find(step);
+                    if (v == no_index) continue;
+                    voxels[count++] = v;
+                    points += grid.first_point[v + 1] - grid.first_point[v];
+                }
         return points;
     }
 

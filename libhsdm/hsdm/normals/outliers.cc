@@ -128,6 +128,7 @@ bool fills_volume(const Octree& octree, const Neighbors& neighbors, std::size_t 
 std::vector<std::uint8_t> outliers_by_distance(const Octree& octree, const Neighbors& neighbors,
                                                const ReachOfAll& all, const OutlierOptions& options) {
     const double typical = all.typical;
+    const double least_stretch = std::min(options.most_stretch, options.doubtful_stretch);
     std::vector<std::uint8_t> found = large_vector<std::uint8_t>(octree.size(), 0);
     for_each_index(octree.size(), chunks::quick, [&](Index i) {
         const double reach = neighbors.reach[i], sparseness = reach / typical;
@@ -139,10 +140,11 @@ std::vector<std::uint8_t> outliers_by_distance(const Octree& octree, const Neigh
             for (Index n : around) count += reach > times * neighbors.reach[n];
             return count > around.size() / 2;
         };
-        if (sparseness > options.most_sparseness || is_stretched(options.most_stretch))
+        const bool is_doubtful = // as all is that is stretched by more
+            sparseness > options.doubtful_sparseness || is_stretched(least_stretch);
+        if (sparseness > options.most_sparseness || (is_doubtful && is_stretched(options.most_stretch)))
             found[i] = 1;
-        else if (!all.fill_volume
-                 && (sparseness > options.doubtful_sparseness || is_stretched(options.doubtful_stretch)))
+        else if (is_doubtful && !all.fill_volume)
             found[i] = is_off_surface(octree, neighbors, i, options);
     });
     return found;

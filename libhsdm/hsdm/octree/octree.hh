@@ -122,8 +122,6 @@ public:
     Index find(MortonCode code) const { return index_.find(code); }
     /// What the index knows of the 64 codes of this number, to look up several.
     const MortonIndex::Block& block_at(MortonCode number) const { return index_.block_at(number); }
-    /// Call it for several codes before the first find(), so that their cache misses overlap.
-    void prefetch(MortonCode code) const { index_.prefetch(code); }
 
     /// To be called once codes are final; find() needs it.
     void build_index() { index_.build(codes); }
@@ -142,11 +140,11 @@ std::vector<Index> first_points(const Octree& octree, int depth);
 /// Offsets of the 6 face, 12 edge and 8 corner neighbours: 6-, 18- and 26-adjacency is the first 6, 18, 26.
 extern const std::array<VoxelCoord, 26> neighbor_offsets;
 
-/// The voxels round one voxel: blocks of the index, eight at most, are looked up once.
+/// The voxels round a place, given as a code of the level: blocks of the index, eight at most, are looked up
+/// once.
 class VoxelsAround {
 public:
-    VoxelsAround(const OctreeLevel& level, Index voxel) : level_(level) {
-        const MortonCode code = level.codes[voxel];
+    VoxelsAround(const OctreeLevel& level, MortonCode code) : level_(level) {
         for (unsigned axis = 0; axis < 3; ++axis) {
             const MortonCode bits =
                 morton_encode(axis == 0 ? ~0u : 0, axis == 1 ? ~0u : 0, axis == 2 ? ~0u : 0)
@@ -179,7 +177,7 @@ private:
 /// visit(voxel) for the occupied ones of the 26 round a voxel, in the order of neighbor_offsets.
 template <class Visit>
 void for_neighbors(const OctreeLevel& level, Index voxel, const Visit& visit) {
-    VoxelsAround around(level, voxel);
+    VoxelsAround around(level, level.codes[voxel]);
     for (const VoxelCoord& o : neighbor_offsets)
         if (const Index v = around.find(o); v != no_index) visit(v);
 }

@@ -68,15 +68,17 @@ FacetLinks rearranged(const FacetLinks& before, const PolygonMesh& old_mesh, con
         const Index twin = before.twin[side];
         links.twin[now[side]] = twin == no_index ? no_index : now[twin];
     });
-    assign_large(links.side_out, mesh.vertex_count(), no_index);
-    assign_large(links.open_in, mesh.vertex_count(), no_index);
+    resize_unwritten(links.side_out, mesh.vertex_count());
+    resize_unwritten(links.open_in, mesh.vertex_count());
     const auto end = [&](Index c) { return mesh.corners[next_side(mesh, links.facet[c], c)]; };
-    for_each_in_order(sides, [&](std::size_t side) {
-        const auto c = static_cast<Index>(side);
-        Index& out = links.side_out[mesh.corners[c]];
-        const bool open = links.twin[c] == no_index;
-        if (open) links.open_in[end(c)] = c;
-        if (open || out == no_index || (links.twin[out] != no_index && end(c) < end(out))) out = c;
+    for_each_index(before.source.size(), chunks::quick, [&](Index v) {
+        const Index first = now[before.side_out[v]], open_in = before.open_in[v];
+        Index out = first;
+        if (open_in == no_index) // else the fan begins with the side that has no twin
+            for (Index c = first; (c = links.twin[previous_side(mesh, links.facet[c], c)]) != first;)
+                if (end(c) < end(out)) out = c;
+        links.side_out[mesh.corners[first]] = out;
+        links.open_in[mesh.corners[first]] = open_in == no_index ? no_index : now[open_in];
     });
     return links;
 }

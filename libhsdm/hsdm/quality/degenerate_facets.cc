@@ -12,19 +12,14 @@
 namespace hsdm {
 namespace {
 
-/// Do the facets, which share a side, have the same vertices?
-bool are_over_the_same(std::span<const Index> a, std::span<const Index> b) {
-    return a.size() == b.size() && std::all_of(a.begin(), a.end(), [&](Index v) {
-               return std::find(b.begin(), b.end(), v) != b.end();
-           });
-}
-
 /// Does a neighbouring facet have the same vertices? Two facets over the same four vertices or fewer always
 /// share a side.
 bool is_of_pillow(const PolygonMesh& mesh, const FacetLinks& links, std::size_t f) {
-    for (Index side = mesh.first[f]; side < mesh.first[f + 1]; ++side) {
-        const Index twin = links.twin[side];
-        if (twin != no_index && are_over_the_same(mesh.facet(f), mesh.facet(links.facet[twin]))) return true;
+    const auto facet = mesh.facet(f);
+    for (std::size_t k = 0; k < facet.size(); ++k) {
+        const Index twin = links.twin[mesh.first[f] + k];
+        const std::size_t beyond = k + 2 < facet.size() ? k + 2 : k + 2 - facet.size(); // the side's ends
+        if (twin != no_index && have_same_vertices(facet, mesh.facet(links.facet[twin]), beyond)) return true;
     }
     return false;
 }

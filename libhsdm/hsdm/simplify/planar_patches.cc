@@ -64,10 +64,11 @@ private:
         parallel_sort(seeds);
         // facets of cores that turned out not to be flat
         std::vector<std::uint8_t> seen = large_vector<std::uint8_t>(field_.size());
+        std::vector<Index> facets;
         for_each_in_order(seeds.size(), [&](std::size_t s) {
             const Index seed = seeds[s].second;
             if (patches_.patch[seed] != no_index || seen[seed]) return;
-            std::vector<Index> facets;
+            facets.clear();
             const Plane plane = grow_core(seed, facets);
             const std::size_t core = facets.size();
             if (core >= flat_ground::least_facets && add_margin(facets, plane)) {
@@ -92,23 +93,27 @@ private:
             return height != other.height ? height > other.height : facet > other.facet;
         }
     };
+    /// Keeps its memory from one plane to the next: most are small.
+    struct Queue : std::priority_queue<Waiting> {
+        void clear() { c.clear(); }
+    };
 
     /// Grows the core of a patch: facets with flat surroundings that face as the plane does, so that bent
     /// margins do not tilt it.
     Plane grow_core(Index seed, std::vector<Index>& facets) {
         GrowingPlane growing;
-        std::priority_queue<Waiting> waiting;
-        waiting.push({0, seed});
-        for (std::size_t looked_at = 0; !waiting.empty(); ++looked_at) {
+        waiting_.clear();
+        waiting_.push({0, seed});
+        for (std::size_t looked_at = 0; !waiting_.empty(); ++looked_at) {
             if (looked_at % chunks::quick == 0) Interruption::poll();
-            const auto [before, f] = waiting.top();
-            waiting.pop();
+            const auto [before, f] = waiting_.top();
+            waiting_.pop();
             if (patches_.patch[f] != no_index) continue;
             const double height = f == seed ? 0 : std::abs(growing.plane().height(field_.centre[f]));
             if (height > flat_ground::core_share * tolerance_) continue;
             if (height > flat_ground::stale * before
                              + collapses::straight_share * flat_ground::core_share * tolerance_) {
-                waiting.push({height, f});
+                waiting_.push({height, f});
                 continue;
             }
             patches_.patch[f] = static_cast<Index>(patches_.planes.size());
@@ -117,7 +122,7 @@ private:
             field_.for_beside(f, [&](Index g) {
                 if (patches_.patch[g] == no_index && field_.spread[g] <= flat_ground::flat_spread
                     && (field_.mean_normal[g] - growing.plane().normal).norm() <= flat_ground::flat_spread)
-                    waiting.push({std::abs(growing.plane().height(field_.centre[g])), g});
+                    waiting_.push({std::abs(growing.plane().height(field_.centre[g])), g});
             });
         }
         return growing.plane();
@@ -177,6 +182,7 @@ private:
     FacetField field_;
     double tolerance_;
     PlanarPatches patches_;
+    Queue waiting_;
     std::vector<std::uint8_t> margin_; // per facet, was it added to a patch by add_margin()?
 };
 

@@ -25,16 +25,18 @@ CellRange range_of(const FacetCells& cells, const PolygonMesh& mesh, std::size_t
 
 FacetCells::FacetCells(const PolygonMesh& mesh, double size) : size_(size), per_size_(1 / size) {
     if (mesh.facet_count() == 0 || !fit(bounds_of(mesh.positions))) return;
-    const std::vector<std::size_t> offset = count(mesh);
+    std::vector<CellRange> ranges = unwritten_vector<CellRange>(mesh.facet_count());
+    const std::vector<std::size_t> offset = list_ranges(mesh, ranges);
     if (offset.empty()) return;
     std::vector<CodeIndex> entries = unwritten_vector<CodeIndex>(offset.back());
     for_chunks(mesh.facet_count(), chunks::quick, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
         std::size_t at = offset[chunk];
         for (std::size_t f = begin; f < end; ++f)
-            range_of(*this, mesh, f).for_each([&](const VoxelCoord& c) {
+            ranges[f].for_each([&](const VoxelCoord& c) {
                 entries[at++] = {morton_encode(c), static_cast<Index>(f)};
             });
     });
+    release(ranges);
     const int bits = static_cast<int>(std::bit_width(static_cast<std::uint32_t>(std::ranges::max(last_))));
     radix_sort(entries, 3 * bits);
     group(entries);
@@ -54,12 +56,17 @@ bool FacetCells::fit(const Box& box) {
     return true;
 }
 
-/// Where the entries of each chunk of facets begin and end; empty if there are too many.
-std::vector<std::size_t> FacetCells::count(const PolygonMesh& mesh) const {
+/// Sets the cells of each facet; returns where the entries of each chunk of facets begin and end, nothing if
+/// there are too many.
+std::vector<std::size_t> FacetCells::list_ranges(const PolygonMesh& mesh,
+                                                 std::vector<CellRange>& ranges) const {
     const std::size_t facets = mesh.facet_count(), chunks = chunk_count(facets, chunks::quick);
     std::vector<double> counts(chunks, 0.0);
     for_chunks(facets, chunks::quick, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
-        for (std::size_t f = begin; f < end; ++f) counts[chunk] += range_of(*this, mesh, f).count();
+        for (std::size_t f = begin; f < end; ++f) {
+            ranges[f] = range_of(*this, mesh, f);
+            counts[chunk] += ranges[f].count();
+        }
     });
     const double total = std::accumulate(counts.begin(), counts.end(), 0.0);
     if (total > std::min<double>(most_cells * static_cast<double>(facets), no_index)) return {};

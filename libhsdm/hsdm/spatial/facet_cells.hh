@@ -68,7 +68,7 @@ public:
 
 private:
     bool fit(const Box& box);
-    std::vector<std::size_t> count(const PolygonMesh& mesh) const;
+    std::vector<std::size_t> list_ranges(const PolygonMesh& mesh, std::vector<CellRange>& ranges) const;
     void group(const std::vector<CodeIndex>& entries);
 
     double size_, per_size_;

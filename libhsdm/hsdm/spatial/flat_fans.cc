@@ -70,18 +70,19 @@ std::uint32_t turns_at(const PolygonMesh& mesh, std::span<const Index> facet, st
     const Vec3 first = arm(1);
     Vec3 last = first;
     double sum = 0, least = std::numeric_limits<double>::infinity(), longest = first.sqrnorm();
+    double across = 0; // from the first arm to the last one
     for (std::size_t i = 2; i < n; ++i) {
         const Vec3 next = arm(i);
         const double part = area(last, next);
         sum += part;
         // each step is checked as well as the sum, which could come round
-        least = std::min({least, part, area(first, next)});
+        across = i == 2 ? part : area(first, next);
+        least = std::min({least, part, across});
         longest = std::max(longest, next.sqrnorm());
         last = next;
     }
     if (n == 4)
-        // a cut beside this corner must not leave a folded rest
-        least = std::min(least, sum - area(first, last));
+        least = std::min(least, sum - across); // a cut beside this corner must not leave a folded rest
     const bool left =
         least > 0 && least * least > least_area * least_area * longest * longest * sight.direction.sqrnorm();
     return !left ? 2 : (first | sight.side) < 0 && (last | sight.side) >= 0;
