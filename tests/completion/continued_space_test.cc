@@ -83,10 +83,10 @@ TEST_CASE("walls go on where they lead, facing as they do, from both ends agains
         const Pose pose = support::turned({0, 1, 0}, tilt, {0, 0, 0});
         const PolygonMesh mesh = bored_disc(3, 0, pose);
         Vec3 ways[2] = {{0, 0, 0}, {0, 0, 0}};
-        for_each_continued_wall(mesh, boundary_loops(mesh), step, [&](const PolygonMesh& walls, bool along) {
-            if (walls.facet_count() == 0) return;
-            CHECK(ways[along] == Vec3(0, 0, 0)); // one of each
-            ways[along] = (walls.positions[2] - walls.positions[1]).normalized();
+        const auto check = [&](const PolygonMesh& walls, Vec3& way) {
+            CHECK(way == Vec3(0, 0, 0)); // one axis
+            REQUIRE(walls.facet_count() > 0);
+            way = (walls.positions[2] - walls.positions[1]).normalized();
             for (std::size_t f = 0; f < walls.facet_count(); ++f) {
                 const auto t = walls.facet(f);
                 const Vec3 p = pose.to_local(walls.positions[t[0]]), q = pose.to_local(walls.positions[t[1]]),
@@ -95,7 +95,12 @@ TEST_CASE("walls go on where they lead, facing as they do, from both ends agains
                 CHECK(std::hypot(middle[0], middle[1]) == Approx(0.6).margin(0.05));
                 CHECK((normal | Vec3(middle[0], middle[1], 0)) < 0);
             }
-        });
+        };
+        for_each_continued_wall(mesh, boundary_loops(mesh), step,
+                                [&](const PolygonMesh& along, const PolygonMesh& against) {
+                                    check(along, ways[0]);
+                                    check(against, ways[1]);
+                                });
         CHECK((ways[0] | ways[1]) == Approx(-1));
     }
 }
