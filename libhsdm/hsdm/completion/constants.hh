@@ -139,7 +139,7 @@ inline constexpr double wall = 0.3;
 /// Why: half of `wall`; rounded edges, which lean so, turned axes by up to 12 degrees.
 inline constexpr double straight_wall = 0.15;
 
-/// share: how much the normals of walls spread round their axis, at least.
+/// share: how much the normals of walls spread round their axis, at least (`WallsRound::spread`).
 /// Why: two parallel faces have any axis along them, and none; it is 0.2 of a slot four times as long as
 /// wide.
 inline constexpr double least_spread = 0.1;
@@ -147,6 +147,10 @@ inline constexpr double least_spread = 0.1;
 /// share: of a loop's length that lies on walls of an axis, at least.
 /// Why: one wall of a square bore is a quarter of its edge; two or more tell a bore.
 inline constexpr double least_walls = 0.3;
+
+/// axes of a mesh, at most: bounds the work. Why: drilled parts have three to eight, meshes of noise
+/// hundreds.
+inline constexpr std::size_t most_axes = 16;
 
 /// cells along the mesh, at most: bounds the work of a cut to 140,000 grid points.
 inline constexpr double most_cells = 48;

@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <utility>
 
 namespace hsdm {
@@ -160,28 +161,36 @@ struct WallsRound {
     double spread = 0; ///< of their normals round it: 0 if all are parallel, 0.5 if none is preferred
 };
 
-/// The axis is the one least along the normals of what stands straight about it, up to rounded edges.
-WallsRound walls_round(const std::vector<SweptSide>& sides, const Vec3& about) {
-    WallsRound walls{about};
-    PlaneSums normals;
-    for (const SweptSide& side : sides) {
-        const double slope = std::abs(side.normal | about);
-        if (slope < continuing::wall) walls.length += side.length();
-        if (slope >= continuing::straight_wall) continue;
-        normals.add(side.normal, 0.5 * side.length());
-        normals.add(-side.normal, 0.5 * side.length());
-    }
-    const PlaneFit fit = fit_plane(normals);
-    if (fit.normal.sqrnorm() == 0 || 2 * normals.weight < walls.length) return walls;
-    walls.axis = fit.normal;
-    // The mean squares along the three axes of the normals add up to 1, of which the fit has the least.
-    double squares = -fit.variance * fit.variance;
+void add_both_ways(const SweptSide& side, PlaneSums& normals) {
+    normals.add(side.normal, 0.5 * side.length());
+    normals.add(-side.normal, 0.5 * side.length());
+}
+
+/// The mean square of unit normals along the second of the axes along which they are least, and most.
+double spread_of(const PlaneSums& normals) {
+    if (!(normals.weight > 0)) return 0;
+    const double least = fit_plane(normals).variance, others = 1 - least;
+    double squares = -least * least;
     for (unsigned k = 0; k < 6; ++k) {
         const double mean = normals.second[k] / normals.weight;
         squares += (k < 3 ? 1 : 2) * mean * mean;
     }
-    const double sum = 1 - fit.variance;
-    walls.spread = 0.5 * (sum - std::sqrt(std::max(2 * squares - sum * sum, 0.0)));
+    return 0.5 * (others - std::sqrt(std::max(2 * squares - others * others, 0.0)));
+}
+
+/// The axis is the one least along the normals of what stands straight about it, up to rounded edges.
+WallsRound walls_round(const std::vector<SweptSide>& sides, const Vec3& about) {
+    WallsRound walls{about};
+    PlaneSums normals, straight;
+    for (const SweptSide& side : sides) {
+        const double slope = std::abs(side.normal | about);
+        if (slope < continuing::wall) add_both_ways(side, normals);
+        if (slope < continuing::straight_wall) add_both_ways(side, straight);
+    }
+    walls.length = normals.weight;
+    walls.spread = spread_of(normals);
+    const Vec3 axis = fit_plane(straight).normal;
+    if (axis.sqrnorm() > 0 && 2 * straight.weight >= walls.length) walls.axis = axis;
     return walls;
 }
 
@@ -206,7 +215,7 @@ Directions supposed_axes(const std::vector<SweptSide>& sides, const std::vector<
     return axes;
 }
 
-/// Adds those of a loop round which many of its sides lie on walls, which are not all parallel; each once.
+/// Adds those of a loop round which many of its sides lie on walls that are not all parallel; each once.
 void add_axes(const std::vector<SweptSide>& sides, const Directions& supposed, Directions& axes) {
     double length = 0;
     for (const SweptSide& side : sides) length += side.length();
@@ -257,6 +266,8 @@ void for_each_continued_wall(const PolygonMesh& mesh, const BoundaryLoops& borde
     Directions axes;
     for (std::size_t l = 0; l < border.size(); ++l)
         append_large(sides, sides_of(mesh, border, l, voxel_size, surroundings, axes));
+    std::ranges::stable_sort(axes.sums, std::ranges::greater(), [](const auto& axis) { return axis.second; });
+    if (axes.sums.size() > continuing::most_axes) axes.sums.resize(continuing::most_axes);
     const auto swept = [&](const Vec3& way) {
         PolygonMesh walls;
         for (const SweptSide& side : sides)
