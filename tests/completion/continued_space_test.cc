@@ -65,6 +65,20 @@ TEST_CASE("a bore of which both ends show is continued space, its disc is not", 
     }
 }
 
+TEST_CASE("the edge of a face counts as the end of a bore whose wall shows at the other end alone",
+          "[completion]") {
+    for (const std::uint64_t seed : {3u, 4u}) {
+        const Pose pose = support::random_pose(seed);
+        const ContinuedSpace space = space_of(turned_profile(
+            {{0.6, 0, -1.1}, {0.6, 0, -1.5}, {1.6, 0, -1.5}, {1.6, 0, 1.5}, {0.6, 0, 1.5}}, pose));
+        REQUIRE_FALSE(space.empty());
+        for (double z = -0.8; z <= 1.2; z += 0.1) {
+            CHECK(space.holds(pose.to_world({0, 0, z})));
+            CHECK_FALSE(space.holds(pose.to_world({1.1, 0, z})));
+        }
+    }
+}
+
 TEST_CASE("walls that lead apart, go on from one side or are a step long open nothing", "[completion]") {
     CHECK(space_of(bored_disc(3, 1)).empty()); // funnels of 45 degrees
     CHECK(space_of(bored_disc(0.3)).empty());
