@@ -65,6 +65,20 @@ TEST_CASE("a bore of which both ends show is continued space, its disc is not", 
     }
 }
 
+TEST_CASE("the edge of a face counts as the end of a bore whose wall shows at the other end alone",
+          "[completion]") {
+    for (const std::uint64_t seed : {3u, 4u}) {
+        const Pose pose = support::random_pose(seed);
+        const ContinuedSpace space = space_of(turned_profile(
+            {{0.6, 0, -1.1}, {0.6, 0, -1.5}, {1.6, 0, -1.5}, {1.6, 0, 1.5}, {0.6, 0, 1.5}}, pose));
+        REQUIRE_FALSE(space.empty());
+        for (double z = -0.8; z <= 1.2; z += 0.1) {
+            CHECK(space.holds(pose.to_world({0, 0, z})));
+            CHECK_FALSE(space.holds(pose.to_world({1.1, 0, z})));
+        }
+    }
+}
+
 TEST_CASE("walls that lead apart, go on from one side or are a step long open nothing", "[completion]") {
     CHECK(space_of(bored_disc(3, 1)).empty()); // funnels of 45 degrees
     CHECK(space_of(bored_disc(0.3)).empty());
@@ -83,10 +97,10 @@ TEST_CASE("walls go on where they lead, facing as they do, from both ends agains
         const Pose pose = support::turned({0, 1, 0}, tilt, {0, 0, 0});
         const PolygonMesh mesh = bored_disc(3, 0, pose);
         Vec3 ways[2] = {{0, 0, 0}, {0, 0, 0}};
-        for_each_continued_wall(mesh, boundary_loops(mesh), step, [&](const PolygonMesh& walls, bool along) {
-            if (walls.facet_count() == 0) return;
-            CHECK(ways[along] == Vec3(0, 0, 0)); // one of each
-            ways[along] = (walls.positions[2] - walls.positions[1]).normalized();
+        const auto check = [&](const PolygonMesh& walls, Vec3& way) {
+            CHECK(way == Vec3(0, 0, 0)); // one axis
+            REQUIRE(walls.facet_count() > 0);
+            way = (walls.positions[2] - walls.positions[1]).normalized();
             for (std::size_t f = 0; f < walls.facet_count(); ++f) {
                 const auto t = walls.facet(f);
                 const Vec3 p = pose.to_local(walls.positions[t[0]]), q = pose.to_local(walls.positions[t[1]]),
@@ -95,7 +109,12 @@ TEST_CASE("walls go on where they lead, facing as they do, from both ends agains
                 CHECK(std::hypot(middle[0], middle[1]) == Approx(0.6).margin(0.05));
                 CHECK((normal | Vec3(middle[0], middle[1], 0)) < 0);
             }
-        });
+        };
+        for_each_continued_wall(mesh, boundary_loops(mesh), step,
+                                [&](const PolygonMesh& along, const PolygonMesh& against) {
+                                    check(along, ways[0]);
+                                    check(against, ways[1]);
+                                });
         CHECK((ways[0] | ways[1]) == Approx(-1));
     }
 }

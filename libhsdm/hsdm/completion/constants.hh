@@ -135,9 +135,22 @@ inline constexpr double least_lead = 0.2;
 /// Why: over two ends' reach it is off by a third of that; drafts are less.
 inline constexpr double wall = 0.3;
 
+/// sine of 9 degrees: what leans more to an axis does not tell where it leads.
+/// Why: half of `wall`; rounded edges, which lean so, turned axes by up to 12 degrees.
+inline constexpr double straight_wall = 0.15;
+
+/// share: how much the normals of walls spread round their axis, at least (`WallsRound::spread`).
+/// Why: two parallel faces have any axis along them, and none; it is 0.2 of a slot four times as long as
+/// wide.
+inline constexpr double least_spread = 0.1;
+
 /// share: of a loop's length that lies on walls of an axis, at least.
 /// Why: one wall of a square bore is a quarter of its edge; two or more tell a bore.
 inline constexpr double least_walls = 0.3;
+
+/// axes of a mesh, at most: bounds the work. Why: drilled parts have three to eight, meshes of noise
+/// hundreds.
+inline constexpr std::size_t most_axes = 16;
 
 /// cells along the mesh, at most: bounds the work of a cut to 140,000 grid points.
 inline constexpr double most_cells = 48;
@@ -146,7 +159,12 @@ inline constexpr double most_cells = 48;
 /// Why: a square bore goes on for as much as ten times its width in place of two lids.
 inline constexpr double wall_cost = 0.05;
 
-/// cells: of the grid, that space is deep behind its lids, at least, to be opened.
+/// share: of its area that a surface along walls costs which nothing confirms from the far end.
+/// Why: walls from both ends drift apart by more than a cell in places; one in six of a bore's may and it
+/// still costs less than two lids do. By trial; with 1 a third more of made parts stay closed.
+inline constexpr double guess_cost = 0.3;
+
+/// cells: of the grid, that space is deep straight in from its lids, at least, in the mean, to be opened.
 /// Why: the least surface of a grid stands a cell off here or there; what is no deeper than its two sides is
 /// a face that stands elsewhere, not a bore.
 inline constexpr double least_depth = 2;

@@ -5,6 +5,7 @@
 #include "hsdm/contour/minimum_cut.hh"
 #include "hsdm/core/chunks.hh"
 #include "hsdm/core/disjoint_sets.hh"
+#include "hsdm/core/interruption.hh"
 #include "hsdm/core/parallel_sort.hh"
 
 #include <algorithm>
@@ -16,6 +17,15 @@ namespace {
 
 /// Walls that pass an edge of the lattice facing up its axis, or down.
 enum Facing : std::uint8_t { up = 1, down = 2 };
+
+/// Bits of `Facing` per edge of the lattice.
+using FacingWalls = std::vector<std::uint8_t>;
+
+/// Walls that pass the edges of a lattice.
+struct ContinuedWalls {
+    FacingWalls confirmed; ///< others that come from the far end along the same axis pass there or beside it
+    FacingWalls all;
+};
 
 LatticePlace place_for(const PolygonMesh& mesh, double voxel_size) {
     Box box;
@@ -36,25 +46,33 @@ Facing facing_between(bool lower_is_outside) {
     return lower_is_outside ? down : up;
 }
 
-/// Per edge, which walls pass there of which others that come from the far end pass it or one beside it.
-std::vector<std::uint8_t> confirmed_walls(const Lattice& lattice, const PolygonMesh& mesh,
-                                          const BoundaryLoops& border, double voxel_size) {
-    std::vector<std::uint8_t> along(3 * lattice.size()), against(along.size()), result(along.size());
-    for_each_continued_wall(mesh, border, voxel_size, [&](const PolygonMesh& walls, bool is_along) {
-        for (const LatticeHit& hit : find_hits(lattice, walls))
-            if (const double d = hit.normal[hit.edge % 3]; d != 0)
-                (is_along ? along : against)[hit.edge] |= facing_between(d < 0);
-    });
-    for_each_index(result.size(), chunks::light, [&](std::size_t e) {
-        if ((along[e] | against[e]) == 0) return;
-        unsigned one = along[e], other = against[e];
-        for (const Index k : lattice.next[e / 3]) {
-            if (k == no_index) continue;
-            one |= along[3 * std::size_t{k} + e % 3];
-            other |= against[3 * std::size_t{k} + e % 3];
-        }
-        result[e] = static_cast<std::uint8_t>(one & other & (along[e] | against[e]));
-    });
+void mark_passed(const Lattice& lattice, const PolygonMesh& walls, FacingWalls& passed) {
+    for (const LatticeHit& hit : find_hits(lattice, walls))
+        if (const double d = hit.normal[hit.edge % 3]; d != 0) passed[hit.edge] |= facing_between(d < 0);
+}
+
+ContinuedWalls continued_walls(const Lattice& lattice, const PolygonMesh& mesh, const BoundaryLoops& border,
+                               double voxel_size) {
+    const FacingWalls none(3 * lattice.size());
+    ContinuedWalls result{none, none};
+    for_each_continued_wall(mesh, border, voxel_size,
+                            [&](const PolygonMesh& along_axis, const PolygonMesh& against_axis) {
+                                FacingWalls along = none, against = none;
+                                mark_passed(lattice, along_axis, along);
+                                mark_passed(lattice, against_axis, against);
+                                for_each_index(none.size(), chunks::light, [&](std::size_t e) {
+                                    const unsigned here = along[e] | against[e];
+                                    if (here == 0) return;
+                                    unsigned one = along[e], other = against[e];
+                                    for (const Index k : lattice.next[e / 3]) {
+                                        if (k == no_index) continue;
+                                        one |= along[3 * std::size_t{k} + e % 3];
+                                        other |= against[3 * std::size_t{k} + e % 3];
+                                    }
+                                    result.all[e] |= static_cast<std::uint8_t>(here);
+                                    result.confirmed[e] |= static_cast<std::uint8_t>(here & one & other);
+                                });
+                            });
     return result;
 }
 
@@ -83,16 +101,19 @@ void for_each_free_edge(const Lattice& lattice, const Visit& visit) {
 }
 
 /// The least surface between what is known to be inside and outside: per grid point, is it outside? Surfaces
-/// along walls cost `continuing::wall_cost` of their area.
+/// along confirmed walls cost `continuing::wall_cost` of their area, along others `continuing::guess_cost`.
 std::vector<std::uint8_t> least_surface(const Lattice& lattice, const std::vector<std::int8_t>& side,
-                                        const std::vector<std::uint8_t>& walls) {
+                                        const ContinuedWalls& walls) {
     const std::vector<Index> unknown =
         indices_where(lattice.size(), chunks::light, [&](Index i) { return side[i] == 0; });
     std::vector<Index> number(lattice.size(), no_index);
     for (std::size_t i = 0; i < unknown.size(); ++i) number[unknown[i]] = static_cast<Index>(i);
     LabelCosts costs(unknown.size()); // label 1: outside
     for_each_free_edge(lattice, [&](std::size_t e, Index a, Index b) {
-        const auto cost = [&](Facing facing) { return (walls[e] & facing) != 0 ? continuing::wall_cost : 1; };
+        const auto cost = [&](Facing facing) {
+            if ((walls.all[e] & facing) == 0) return 1.0;
+            return (walls.confirmed[e] & facing) != 0 ? continuing::wall_cost : continuing::guess_cost;
+        };
         if (side[a] == 0 && side[b] == 0)
             costs.add(number[a], number[b], {{{0, cost(up)}, {cost(down), 0}}});
         else if (side[a] == 0)
@@ -109,17 +130,29 @@ std::vector<std::uint8_t> least_surface(const Lattice& lattice, const std::vecto
 
 /// A connected part of what opens, in grid points and edges.
 struct OpenedPart {
-    double points = 0;
     double lids = 0;              ///< of the least surface without walls, which it takes away
-    double walls = 0, others = 0; ///< what bounds it in their place
+    double depth = 0;             ///< behind all of its lids: points straight in from each
+    double walls = 0, others = 0; ///< what bounds it in their place: confirmed walls, and what is not
 
-    bool is_evident() const { return points >= continuing::least_depth * lids && walls > others; }
+    bool is_evident() const { return depth >= continuing::least_depth * lids && walls > others; }
 };
+
+/// From a grid point on along an axis (up, or down: 3 and more), how many lie in a row, with no mesh between,
+/// of those that open?
+template <class Opens>
+int straight_in(const Lattice& lattice, Index point, unsigned way, const Opens& opens) {
+    for (int count = 1;; ++count) {
+        const Index next = lattice.next[point][way];
+        if (next == no_index || !opens(next)) return count;
+        if (!lattice.on_edge(3 * std::size_t{way < 3 ? point : next} + way % 3).empty()) return count;
+        point = next;
+    }
+}
 
 /// Leaves open what is deep behind its lids and bounded by walls, most of it, in each connected part; is
 /// there any?
-bool keep_evident(const Lattice& lattice, const std::vector<std::uint8_t>& closed,
-                  const std::vector<std::uint8_t>& walls, std::vector<std::uint8_t>& open) {
+bool keep_evident(const Lattice& lattice, const std::vector<std::uint8_t>& closed, const FacingWalls& walls,
+                  std::vector<std::uint8_t>& open) {
     const std::vector<std::uint8_t> all = open;
     const auto opens = [&](Index i) { return all[i] > closed[i]; };
     DisjointSets sets(lattice.size());
@@ -129,12 +162,15 @@ bool keep_evident(const Lattice& lattice, const std::vector<std::uint8_t>& close
     });
     for_each_free_edge(lattice, [&](std::size_t e, Index a, Index b) {
         if (opens(a) == opens(b)) return;
-        const auto [inner, other] = opens(a) ? std::pair(a, b) : std::pair(b, a);
-        OpenedPart& part = parts[sets.find(inner)];
-        const bool on_wall = (walls[e] & facing_between(inner == a)) != 0;
-        ++(all[other] != 0 ? part.lids : on_wall ? part.walls : part.others);
+        const bool is_up = opens(b); // from outside into the part
+        OpenedPart& part = parts[sets.find(is_up ? b : a)];
+        if (all[is_up ? a : b] != 0) {
+            ++part.lids;
+            const auto axis = static_cast<unsigned>(e % 3);
+            part.depth += straight_in(lattice, is_up ? b : a, is_up ? axis : axis + 3, opens);
+        } else
+            ++((walls[e] & facing_between(!is_up)) != 0 ? part.walls : part.others);
     });
-    for (Index i = 0; i < lattice.size(); ++i) parts[sets.find(i)].points += opens(i);
     bool any = false;
     for (Index i = 0; i < lattice.size(); ++i) {
         if (!opens(i)) continue;
@@ -155,12 +191,14 @@ std::size_t number_of(const LatticePlace& place, const VoxelCoord& c) {
 ContinuedSpace::ContinuedSpace(const PolygonMesh& mesh, const BoundaryLoops& border, double voxel_size)
     : place_(place_for(mesh, voxel_size)) {
     const Lattice lattice = build_lattice(place_, all_points(place_), mesh);
-    const std::vector<std::uint8_t> walls = confirmed_walls(lattice, mesh, border, voxel_size);
-    if (std::ranges::count(walls, 0) == std::ssize(walls)) return;
+    const ContinuedWalls walls = continued_walls(lattice, mesh, border, voxel_size);
+    if (std::ranges::count(walls.confirmed, 0) == std::ssize(walls.confirmed)) return;
     const std::vector<std::int8_t> side = known_sides(lattice);
-    const std::vector<std::uint8_t> none(walls.size()), closed = least_surface(lattice, side, none);
+    const FacingWalls none(walls.all.size());
+    const std::vector<std::uint8_t> closed = least_surface(lattice, side, {none, none});
+    Interruption::poll();
     std::vector<std::uint8_t> open = least_surface(lattice, side, walls);
-    if (keep_evident(lattice, closed, walls, open)) take_cells(lattice, open, closed);
+    if (keep_evident(lattice, closed, walls.confirmed, open)) take_cells(lattice, open, closed);
 }
 
 void ContinuedSpace::take_cells(const Lattice& lattice, const std::vector<std::uint8_t>& open,

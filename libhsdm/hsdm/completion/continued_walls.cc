@@ -7,10 +7,12 @@
 #include "hsdm/core/interruption.hh"
 #include "hsdm/core/large_vector.hh"
 #include "hsdm/mesh/area_vector.hh"
+#include "hsdm/normals/plane_fit.hh"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <utility>
 
 namespace hsdm {
@@ -152,13 +154,51 @@ struct SweptSide {
     }
 };
 
-/// Those along which many sides of a loop lie on walls.
-std::vector<Vec3> axes_of(const std::vector<SweptSide>& sides, const std::vector<Surrounding>& around,
-                          double voxel_size) {
+/// What a loop's sides say of an axis that walls stand round.
+struct WallsRound {
+    Vec3 axis{0, 0, 0};
+    double length = 0; ///< of the sides that lie on walls of it
+    double spread = 0; ///< of their normals round it: 0 if all are parallel, 0.5 if none is preferred
+};
+
+void add_both_ways(const SweptSide& side, PlaneSums& normals) {
+    normals.add(side.normal, 0.5 * side.length());
+    normals.add(-side.normal, 0.5 * side.length());
+}
+
+/// The mean square of unit normals along the second of the axes along which they are least, and most.
+double spread_of(const PlaneSums& normals) {
+    if (!(normals.weight > 0)) return 0;
+    const double least = fit_plane(normals).variance, others = 1 - least;
+    double squares = -least * least;
+    for (unsigned k = 0; k < 6; ++k) {
+        const double mean = normals.second[k] / normals.weight;
+        squares += (k < 3 ? 1 : 2) * mean * mean;
+    }
+    return 0.5 * (others - std::sqrt(std::max(2 * squares - others * others, 0.0)));
+}
+
+/// The axis is the one least along the normals of what stands straight about it, up to rounded edges.
+WallsRound walls_round(const std::vector<SweptSide>& sides, const Vec3& about) {
+    WallsRound walls{about};
+    PlaneSums normals, straight;
+    for (const SweptSide& side : sides) {
+        const double slope = std::abs(side.normal | about);
+        if (slope < continuing::wall) add_both_ways(side, normals);
+        if (slope < continuing::straight_wall) add_both_ways(side, straight);
+    }
+    walls.length = normals.weight;
+    walls.spread = spread_of(normals);
+    const Vec3 axis = fit_plane(straight).normal;
+    if (axis.sqrnorm() > 0 && 2 * straight.weight >= walls.length) walls.axis = axis;
+    return walls;
+}
+
+/// Axes that a loop's surroundings may have: the rulings of walls, and what two planes have in common.
+Directions supposed_axes(const std::vector<SweptSide>& sides, const std::vector<Surrounding>& around,
+                         double voxel_size) {
     Directions normals, axes;
-    double length = 0;
     for (std::size_t i = 0; i < sides.size(); ++i) {
-        length += sides[i].length();
         if (around[i].shape == Shape::flat) normals.add(around[i].normal, sides[i].length(), false);
         if (around[i].shape == Shape::ruled) axes.add(around[i].ruling, sides[i].length(), true);
     }
@@ -172,15 +212,23 @@ std::vector<Vec3> axes_of(const std::vector<SweptSide>& sides, const std::vector
             if (common.norm() > continuing::least_sine)
                 axes.add(unit(common), std::min(weight, other_weight), true);
         }
-    std::vector<Vec3> result;
-    for (const auto& [sum, weight] : axes.sums) {
-        const Vec3 axis = unit(sum);
-        double on_walls = 0;
-        for (const SweptSide& side : sides)
-            if (std::abs(side.normal | axis) < continuing::wall) on_walls += side.length();
-        if (on_walls >= continuing::least_walls * length) result.push_back(axis);
+    return axes;
+}
+
+/// Adds those of a loop round which many of its sides lie on walls that are not all parallel; each once.
+void add_axes(const std::vector<SweptSide>& sides, const Directions& supposed, Directions& axes) {
+    double length = 0;
+    for (const SweptSide& side : sides) length += side.length();
+    Directions own;
+    for (const auto& [sum, weight] : supposed.sums) {
+        // Once more about where the first leads, as what stands straight about that is more.
+        const WallsRound walls = walls_round(sides, walls_round(sides, unit(sum)).axis);
+        if (walls.length < continuing::least_walls * length || walls.spread < continuing::least_spread)
+            continue;
+        const std::size_t before = own.sums.size();
+        own.add(walls.axis, walls.length, true);
+        if (own.sums.size() > before) axes.add(walls.axis, walls.length, true);
     }
-    return result;
 }
 
 void add_swept(const SweptSide& side, const Vec3& way, PolygonMesh& walls) {
@@ -190,61 +238,46 @@ void add_swept(const SweptSide& side, const Vec3& way, PolygonMesh& walls) {
     walls.add_facet(std::array{first, first + 2, first + 3});
 }
 
-/// Is it the one of an axis's two directions that counts as along it? Ways that are about one have one
-/// answer, that of the axis nearest to them; axes that are not far apart have one as well but for few, so
-/// that walls do not confirm others of their own end.
-bool leads_along(const Vec3& way, const Directions& axes) {
-    const auto off = [&](const auto& axis) { return -std::abs(unit(axis.first) | way); };
-    const Vec3 axis = unit(std::ranges::min_element(axes.sums, {}, off)->first);
-    unsigned decides = 0;
-    while (decides < 2 && std::abs(axis[decides]) <= 0.5) ++decides; // one of three is more than 0.57
-    return (axis[decides] > 0) == ((axis | way) > 0);
-}
-
-/// A loop's sides, and the axes along which it goes on.
-struct SweptLoop {
+/// The sides of a loop; `axes` take its own.
+std::vector<SweptSide> sides_of(const PolygonMesh& mesh, const BoundaryLoops& border, std::size_t l,
+                                double voxel_size, Surroundings& surroundings, Directions& axes) {
     std::vector<SweptSide> sides;
-    std::vector<Vec3> axes;
-};
-
-SweptLoop swept_loop(const PolygonMesh& mesh, const BoundaryLoops& border, std::size_t l, double voxel_size,
-                     Surroundings& surroundings) {
-    SweptLoop loop;
     std::vector<Surrounding> around;
     for (Index i = border.begin[l]; i < border.begin[l + 1]; ++i) {
         Interruption::poll();
         const Index next = i + 1 < border.begin[l + 1] ? i + 1 : border.begin[l];
         around.push_back(surroundings.of(border.facets[i], i));
-        loop.sides.push_back({mesh.positions[border.vertices[i]], mesh.positions[border.vertices[next]],
-                              around.back().normal});
+        sides.push_back({mesh.positions[border.vertices[i]], mesh.positions[border.vertices[next]],
+                         around.back().normal});
     }
-    loop.axes = axes_of(loop.sides, around, voxel_size);
-    if (loop.axes.empty()) release(loop.sides);
-    return loop;
+    add_axes(sides, supposed_axes(sides, around, voxel_size), axes);
+    return sides;
 }
 
 } // namespace
 
 void for_each_continued_wall(const PolygonMesh& mesh, const BoundaryLoops& border, double voxel_size,
-                             const std::function<void(const PolygonMesh&, bool)>& visit) {
+                             const std::function<void(const PolygonMesh&, const PolygonMesh&)>& visit) {
     Surroundings surroundings(mesh, voxel_size);
     Box box;
     for (const Vec3& p : mesh.positions) box.add(p);
     const double far = box.size().norm();
-    std::vector<SweptLoop> loops;
-    Directions axes; // of all loops: what is along one has one sign
-    for (std::size_t l = 0; l < border.size(); ++l) {
-        loops.push_back(swept_loop(mesh, border, l, voxel_size, surroundings));
-        for (const Vec3& axis : loops.back().axes) axes.add(axis, 1, true);
+    std::vector<SweptSide> sides; // of all loops
+    Directions axes;
+    for (std::size_t l = 0; l < border.size(); ++l)
+        append_large(sides, sides_of(mesh, border, l, voxel_size, surroundings, axes));
+    std::ranges::stable_sort(axes.sums, std::ranges::greater(), [](const auto& axis) { return axis.second; });
+    if (axes.sums.size() > continuing::most_axes) axes.sums.resize(continuing::most_axes);
+    const auto swept = [&](const Vec3& way) {
+        PolygonMesh walls;
+        for (const SweptSide& side : sides)
+            if (side.goes_on(way)) add_swept(side, way * far, walls);
+        return walls;
+    };
+    for (const auto& [sum, weight] : axes.sums) {
+        Interruption::poll();
+        visit(swept(unit(sum)), swept(-unit(sum)));
     }
-    for (const SweptLoop& loop : loops)
-        for (const Vec3& axis : loop.axes)
-            for (const Vec3& way : {axis, -axis}) {
-                PolygonMesh walls;
-                for (const SweptSide& side : loop.sides)
-                    if (side.goes_on(way)) add_swept(side, way * far, walls);
-                visit(walls, leads_along(way, axes));
-            }
 }
 
 } // namespace hsdm

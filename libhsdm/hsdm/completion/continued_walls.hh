@@ -7,14 +7,16 @@
 
 namespace hsdm {
 
-/// Calls visit(walls, along) with sides of the border swept along the axes of what they bound, as far as the
-/// mesh is wide, two triangles each, facing as the mesh: all of one loop swept one way, which counts as along
-/// its axis (of any two ways that are opposite about one does) or not. A loop has an axis where the mesh
-/// beside it is straight: along the ruling of a round wall, or along what two planes have in common. All of
-/// its sides go on along it that lie on walls of the axis and lead along it, or on faces that it enters.
-/// `mesh`: facets outward. O(facets + border * (facets within
+/// Calls visit(along, against) once per axis of a mesh, with sides of its border swept along it and against
+/// it, as far as the mesh is wide, two triangles each, facing as the mesh. Where the mesh beside a loop is
+/// straight it tells an axis: the ruling of a round wall, or what two planes have in common, if many of the
+/// loop's sides lie on walls of it that are not all parallel. What loops tell within
+/// `continuing::one_direction` is one axis, of all of them; of more than `continuing::most_axes` those that
+/// most border lies on walls of. Of every loop those sides go on along an axis that lie on walls of it and
+/// lead along it, or on faces that it enters. `mesh`: facets outward. O(facets + border * (facets within
 /// `continuing::reach` + axes)).
-void for_each_continued_wall(const PolygonMesh& mesh, const BoundaryLoops& border, double voxel_size,
-                             const std::function<void(const PolygonMesh& walls, bool along)>& visit);
+void for_each_continued_wall(
+    const PolygonMesh& mesh, const BoundaryLoops& border, double voxel_size,
+    const std::function<void(const PolygonMesh& along, const PolygonMesh& against)>& visit);
 
 } // namespace hsdm
