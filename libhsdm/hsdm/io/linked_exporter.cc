@@ -110,10 +110,10 @@ LinkedExporter::LinkedExporter(const LinkedMesh& mesh)
 void LinkedExporter::add_properties() {
     const auto& columns = mesh_.rows.columns;
     for (std::size_t k = 0; k < columns.size(); ++k) {
-        const auto& [name, type] = columns[k];
+        const std::string& name = columns[k].first;
         if (name == vertex_normal_component(0)) add_normals(k);
         if (name.starts_with(std::string(vertex_normals_property) + '_')) continue;
-        with_type(type, 0, [&]<class Number>(Number) {
+        with_type(columns[k].second, 0, [&]<class Number>(Number) {
             add_property<Number>(
                 name, n_vertices(), rows_, [k](const double* row) { return static_cast<Number>(row[k]); },
                 properties_);

@@ -3,6 +3,7 @@
 #include "hsdm/errors.hh"
 #include "hsdm/io/float_precision.hh"
 #include "hsdm/io/format_chunks.hh"
+#include "hsdm/io/mesh_document.hh"
 #include "hsdm/io/mesh_writers.hh"
 #include "hsdm/io/split_mesh.hh"
 

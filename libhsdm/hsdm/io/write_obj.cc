@@ -10,13 +10,13 @@ void append_vector(std::string& out, const char* keyword, const Vec3& vector) {
     out += '\n';
 }
 
-void append_positions(std::string& out, const PolygonMesh& mesh, const VertexRows&, std::size_t begin,
-                      std::size_t end) {
+void append_position_lines(std::string& out, const PolygonMesh& mesh, const VertexRows&, std::size_t begin,
+                           std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) append_vector(out, "v", mesh.positions[v]);
 }
 
-void append_normals(std::string& out, const PolygonMesh&, const VertexRows& rows, std::size_t begin,
-                    std::size_t end) {
+void append_normal_lines(std::string& out, const PolygonMesh&, const VertexRows& rows, std::size_t begin,
+                         std::size_t end) {
     std::vector<Vec3> normals;
     std::vector<double> values;
     rows.fill(begin, end, normals, values);
@@ -27,8 +27,8 @@ void append_normals(std::string& out, const PolygonMesh&, const VertexRows& rows
 
 MeshDocument obj_document(bool normals) {
     MeshDocument document;
-    document.vertices.push_back({append_positions, false});
-    if (normals) document.vertices.push_back({append_normals});
+    document.vertices.push_back({append_position_lines, false});
+    if (normals) document.vertices.push_back({append_normal_lines});
     document.facets = [normals](std::string& out, const PolygonMesh& mesh, std::size_t begin,
                                 std::size_t end) {
         for (std::size_t f = begin; f < end; ++f) {
