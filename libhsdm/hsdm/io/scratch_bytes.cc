@@ -17,10 +17,10 @@ std::string failure() {
     return std::strerror(errno);
 }
 
-std::atomic<std::size_t> written{0}, held{0}, most_held{0};
+std::atomic<std::size_t> all_written{0}, held_now{0}, most_held{0};
 
 void note_held(std::size_t bytes) {
-    const std::size_t now = held.fetch_add(bytes) + bytes;
+    const std::size_t now = held_now.fetch_add(bytes) + bytes;
     for (std::size_t most = most_held; now > most && !most_held.compare_exchange_weak(most, now);) {
     }
 }
@@ -32,7 +32,7 @@ std::string in_megabytes(std::size_t bytes) {
 } // namespace
 
 ScratchUse scratch_use() {
-    return {written, most_held};
+    return {all_written, most_held};
 }
 
 ScratchBytes::ScratchBytes(const ScratchPlace& place)
@@ -67,7 +67,7 @@ void ScratchBytes::open(const std::string& path, std::size_t is_there) {
 }
 
 ScratchBytes::~ScratchBytes() {
-    held -= size_;
+    held_now -= size_;
     os::close(file_);
 }
 
@@ -91,7 +91,7 @@ std::size_t ScratchBytes::append(const char* what, const void* bytes, std::size_
         throw Error(folder_, std::string(what) + " cannot be written to scratch after " + in_megabytes(size_)
                                  + ": " + failure() + "; --scratch names another folder");
     size_ += count;
-    written += count;
+    all_written += count;
     note_held(count);
     return size_ - count;
 }
