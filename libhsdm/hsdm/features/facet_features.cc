@@ -28,9 +28,9 @@ void for_sides(const PolygonMesh& facets, std::size_t f, const Visit& visit) {
     for (Index c = facets.first[f]; c < last; ++c) visit(c);
 }
 
-class Finder {
+class FeatureFinder {
 public:
-    Finder(const PolygonMesh& facets, const FacetLinks& links, const FeatureOptions& options)
+    FeatureFinder(const PolygonMesh& facets, const FacetLinks& links, const FeatureOptions& options)
         : facets_(facets), links_(links), options_(options) {}
 
     FacetFeatures find(FeatureHints&& hints) {
@@ -169,7 +169,7 @@ private:
 FacetFeatures find_facet_features(const PolygonMesh& facets, const FacetLinks& links, FeatureHints&& hints,
                                   const FeatureOptions& options) {
     validate(options);
-    return Finder(facets, links, options).find(std::move(hints));
+    return FeatureFinder(facets, links, options).find(std::move(hints));
 }
 
 FacetNormals facet_normals(const PolygonMesh& facets) {

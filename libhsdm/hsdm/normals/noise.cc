@@ -53,11 +53,17 @@ auto sampled(const Octree& octree, const Measure& measure) {
 Octree thinned(const Octree& octree) {
     Octree thin;
     thin.origin = octree.origin, thin.extent = octree.extent, thin.bounds = octree.bounds;
-    for (std::size_t i = 0; i < octree.size(); i += 4) {
+    for (std::size_t i = 0; i < octree.size(); ++i) {
+        if (!is_of_thinned(i)) continue;
         thin.codes.push_back(octree.codes[i]);
         thin.positions.push_back(octree.positions[i]);
     }
     return thin;
+}
+
+/// Too few for another round, which uses a quarter of them?
+bool is_few(std::size_t points) {
+    return points < 4 * noise::fewest;
 }
 
 struct Scale {
@@ -117,9 +123,11 @@ std::vector<NoiseSample> noise_samples(const Octree& octree, std::span<const Ind
     return samples;
 }
 
-std::optional<double> noise_deviation(std::span<const NoiseSample> samples) {
+std::optional<double> noise_deviation(std::span<const NoiseSample> samples, std::size_t points) {
     for (std::size_t s = 0; s < scales().size(); ++s) {
-        if (const ScaleNoise found = noise_at(s, samples); found.is_small) return found.deviation;
+        const ScaleNoise found = noise_at(s, samples);
+        const bool is_last = s + 1 == scales().size() && is_few(points);
+        if (found.is_small || is_last) return found.deviation;
     }
     return std::nullopt;
 }
@@ -153,8 +161,7 @@ double noise_deviation(const Octree& octree, const Neighbors& neighbors,
     const ScaleNoise found = noise_at(scales()[1], sampled(octree, [&](std::size_t i) {
                                           return roughness(octree, neighbors.of(i), scales()[1].few, i);
                                       }));
-    if (found.is_small || octree.size() < 4 * noise::fewest) // the next round uses a quarter of them
-        return found.deviation;
+    if (found.is_small || is_few(octree.size())) return found.deviation;
     const Octree thin = thinned(octree);
     return noise_deviation(thin, find_neighbors(thin));
 }

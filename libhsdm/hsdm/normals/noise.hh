@@ -39,8 +39,12 @@ double noise_deviation(const Octree& octree, const Neighbors& neighbors,
 /// `neighbors`: of these points alone.
 std::vector<NoiseSample> noise_samples(const Octree& octree, std::span<const Index> points,
                                        const Neighbors& neighbors);
-/// From the samples in any order; nothing where no scale is found without thinning the cloud.
-std::optional<double> noise_deviation(std::span<const NoiseSample> samples);
+/// From the samples in any order, of a cloud of so many points; nothing where it takes the same of
+/// the thinned cloud.
+std::optional<double> noise_deviation(std::span<const NoiseSample> samples, std::size_t points);
+inline bool is_of_thinned(std::size_t point) {
+    return point % 4 == 0;
+}
 
 /// Neighbours per point that such noise, measured with 16 of them, calls for: 16, 32 or 64.
 int neighbors_for_noise(double noise);

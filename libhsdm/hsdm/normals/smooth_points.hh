@@ -3,7 +3,7 @@
 
 #include "hsdm/core/occurrences.hh"
 #include "hsdm/normals/constants.hh"
-#include "hsdm/normals/neighbors.hh"
+#include "hsdm/normals/outliers.hh"
 
 namespace hsdm {
 
@@ -33,6 +33,9 @@ bool is_noisy(const Octree& octree, double noise, const SmoothOptions& options =
 /// of the points left, whatever it held before. O(n), parallel. Throws OptionError.
 SmoothReport smooth_known_noise(Octree& octree, double noise, Neighbors& neighbors,
                                 const SmoothOptions& options = {});
+
+/// The outliers among moved points that the last function removes.
+OutlierOptions outliers_between_sheets(const SmoothOptions& options = {});
 
 /// Moves every point onto the plane fitted to its surroundings, along the plane's normal. The surroundings
 /// reach four standard deviations of the noise (in the cloud's units, > 0), farther if that holds too few

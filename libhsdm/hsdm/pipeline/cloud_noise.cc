@@ -56,18 +56,45 @@ private:
     std::vector<NoiseSample> found_, samples_;
 };
 
-} // namespace
-
-CloudNoise cloud_noise(ScratchCloud& cloud, const CloudSurvey& survey, std::span<const VoxelRange> ranges,
-                       int ghost, int neighbors) {
-    NoisePass pass(cloud, survey.sums, neighbors);
-    cloud.for_tiles(ranges, ghost,
+std::vector<NoiseSample> samples_of(ScratchCloud& cloud, const Survey& sums, const CloudPasses& passes,
+                                    int neighbors) {
+    NoisePass pass(cloud, sums, neighbors);
+    const int ghost = passes.ghost_voxels;
+    cloud.for_tiles(passes.plan(cloud, ghost), ghost,
                     [&](const Octree& octree, const VoxelRange& range) { pass.add(octree, range, ghost); });
     pass.add_far_cells(cloud);
-    const std::vector<NoiseSample> all = values_of_all(cloud.ranks(), pass.samples());
-    const std::optional<double> deviation = noise_deviation(all);
-    if (!deviation) refuse_in_tiles("the noise is wider than neighbours are apart");
-    return {*deviation, estimate_noise(all)};
+    return values_of_all(cloud.ranks(), pass.samples());
+}
+
+ScratchCloud thinned(const ScratchCloud& cloud, const Survey& sums, std::size_t most) {
+    ScratchCloud thin = cloud.emptied(false);
+    const std::vector<Survey::FirstPoint> first = sums.first_points();
+    const auto own = std::ranges::find_if(first, [&](const Survey::FirstPoint& of_cell) {
+        return cloud.owner(of_cell.cell) == cloud.ranks().rank();
+    });
+    std::size_t number = own != first.end() ? own->number : 0;
+    cloud.for_groups(most, [&](const Octree& part) {
+        for (std::size_t i = 0; i < part.size(); ++i)
+            if (is_of_thinned(number++)) thin.add(part, i);
+    });
+    thin.finish_sorted();
+    return thin;
+}
+
+double deviation_of(ScratchCloud& cloud, const Survey& sums, const std::vector<NoiseSample>& samples,
+                    const CloudPasses& passes) {
+    if (const auto found = noise_deviation(samples, sums.points())) return *found;
+    ScratchCloud thin = thinned(cloud, sums, passes.most_points);
+    const Survey of_thin = survey_cloud(thin, (sums.points() + 3) / 4, passes.most_points).sums;
+    return deviation_of(thin, of_thin, samples_of(thin, of_thin, passes, NeighborOptions().count), passes);
+}
+
+} // namespace
+
+CloudNoise cloud_noise(ScratchCloud& cloud, const CloudSurvey& survey, const CloudPasses& passes,
+                       int neighbors) {
+    const std::vector<NoiseSample> samples = samples_of(cloud, survey.sums, passes, neighbors);
+    return {deviation_of(cloud, survey.sums, samples, passes), estimate_noise(samples)};
 }
 
 } // namespace hsdm

@@ -5,8 +5,9 @@
 #include "hsdm/normals/arcs.hh"
 #include "hsdm/normals/noise.hh"
 #include "hsdm/normals/vote_on_normals.hh"
-#include "hsdm/pipeline/cloud_noise.hh"
+#include "hsdm/pipeline/cloud_smoothing.hh"
 #include "hsdm/pipeline/part_store.hh"
+#include "hsdm/pipeline/stray_search.hh"
 
 #include <algorithm>
 #include <cmath>
@@ -340,26 +341,50 @@ private:
     ScratchCloud& next_;
 };
 
+/// What has been done before the normals are made.
+struct Begun {
+    bool is_sided = false;
+    NormalsReport report;
+    Estimating how;
+    SignsOfAll signs; ///< if it is
+};
+
 /// How neighbours are sought and planes fitted, by the noise of all points.
-Estimating estimating(ScratchCloud& cloud, const CloudSurvey& survey, const CloudNormalsOptions& options) {
-    const std::vector<VoxelRange> ranges = options.plan();
-    CloudNoise noise = cloud_noise(cloud, survey, ranges, options.ghost_voxels);
-    if (noise.deviation > SmoothOptions().least_noise * survey.spacing)
-        refuse_in_tiles("points are noisy, and would be moved onto their surface");
+Estimating estimating(ScratchCloud& cloud, const CloudSurvey& survey, const CloudPasses& passes,
+                      CloudNoise noise) {
     Estimating how;
     if (const int wanted = neighbors_for_noise(noise.relative); wanted > how.neighbors.count) {
         how.neighbors.count = wanted;
-        noise = cloud_noise(cloud, survey, ranges, options.ghost_voxels, wanted);
+        noise = cloud_noise(cloud, survey, passes, wanted);
     }
     how.neighbors.finest_level = survey.sums.finest_leaves();
     how.estimate.noise = noise.relative;
     return how;
 }
 
+/// As make_normals() begins.
+void clean(ScratchCloud& cloud, CloudSurvey& survey, const CloudPasses& passes, PartStore& store,
+           std::optional<ScratchCloud>& as_read, Begun& begun) {
+    NormalsReport& report = begun.report;
+    std::vector<PointRow> out;
+    report.outliers =
+        leave_outliers_out(cloud, survey, passes.plan, passes.most_points, store, OutlierOptions(), out);
+    if (report.outliers.count > 0 && fit_to_points_left(cloud, passes.most_points))
+        survey = survey_cloud(cloud, survey.sums.points(), passes.most_points);
+    CloudNoise noise = cloud_noise(cloud, survey, passes);
+    if (!(noise.deviation <= SmoothOptions().least_noise * survey.spacing)) {
+        report.smoothed =
+            smooth_cloud(cloud, survey, noise.deviation, passes.plan, passes.most_points, store, as_read);
+        noise = cloud_noise(cloud, survey, passes);
+    }
+    begun.how = estimating(cloud, survey, passes, noise);
+    report.noise = *begun.how.estimate.noise;
+}
+
 /// In one pass, and one more where sheets may be layers.
 SignsOfAll find_signs(ScratchCloud& cloud, const CloudSurvey& survey, std::span<const VoxelRange> ranges,
                       const Estimating& how, const CloudNormalsOptions& options, PartStore& store) {
-    const EmptySpace space = space_of(cloud, survey.spacing, options.most_points);
+    const EmptySpace space = space_of(cloud, survey.spacing, options.passes.most_points);
     for (bool may_be_layers = false;; may_be_layers = true) {
         EvidencePass pass(how, space, survey.spacing, may_be_layers, options.memory, store);
         for_parts(cloud, survey.sums, ranges, store.widths,
@@ -369,14 +394,6 @@ SignsOfAll find_signs(ScratchCloud& cloud, const CloudSurvey& survey, std::span<
             return std::move(*signs);
     }
 }
-
-/// What has been done before the normals are made.
-struct Begun {
-    bool is_sided = false;
-    NormalsReport report;
-    Estimating how;
-    SignsOfAll signs; ///< if it is
-};
 
 Ranks::Bytes bytes_of_begun(const Begun& begun) {
     Ranks::Bytes bytes;
@@ -398,21 +415,19 @@ Begun begun_from(const Ranks::Bytes& bytes) {
 
 } // namespace
 
-NormalsReport make_cloud_normals(ScratchCloud& cloud, CloudSurvey& survey,
-                                 const CloudNormalsOptions& options) {
+NormalsReport make_cloud_normals(ScratchCloud& cloud, CloudSurvey& survey, const CloudNormalsOptions& options,
+                                 std::optional<ScratchCloud>& as_read) {
     Begun begun = options.begun.empty() ? Begun() : begun_from(options.begun);
     const auto keep = [&](bool sided) {
         begun.is_sided = sided;
         if (options.keep) options.keep(sided, bytes_of_begun(begun));
     };
-    PartStore store(cloud, options.ghost_voxels);
+    PartStore store(cloud, options.passes.ghost_voxels);
     if (options.begun.empty()) {
-        begun.report.outliers = leave_outliers_out(cloud, survey, options.plan, options.most_points, store);
-        begun.how = estimating(cloud, survey, options);
-        begun.report.noise = *begun.how.estimate.noise;
+        clean(cloud, survey, options.passes, store, as_read, begun);
         keep(false);
     }
-    const std::vector<VoxelRange> ranges = options.plan();
+    const std::vector<VoxelRange> ranges = options.passes.plan(cloud, options.passes.ghost_voxels);
     if (!begun.is_sided) {
         begun.signs = find_signs(cloud, survey, ranges, begun.how, options, store);
         begun.report.orientation = begun.signs.report;

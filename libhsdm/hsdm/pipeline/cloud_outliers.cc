@@ -1,11 +1,11 @@
 #include "hsdm/pipeline/cloud_outliers.hh"
 
 #include "hsdm/core/large_vector.hh"
+#include "hsdm/pipeline/nth_of_all.hh"
 #include "hsdm/pipeline/part_store.hh"
 #include "hsdm/pipeline/stray_search.hh"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 
 namespace hsdm {
@@ -19,38 +19,6 @@ struct PartNeighbors {
     PartNeighbors(const CloudPart& part, int finest, PartStore& store)
         : neighbors(store.neighbors(part, {.finest_level = finest})), known(part.known_by(neighbors)) {}
 };
-
-std::vector<std::uint64_t> sum_of_each(const std::vector<std::uint64_t>& own, Ranks& ranks) {
-    std::vector<std::uint64_t> all(own.size(), 0);
-    for (const Ranks::Bytes& got : ranks.gather(bytes_of(own))) {
-        const auto counts = ByteReader(got).take_rest<std::uint64_t>();
-        for (std::size_t k = 0; k < all.size(); ++k) all[k] += counts[k];
-    }
-    return all;
-}
-
-/// The one in the middle of all ranks' values, none negative: by its first sixteen bits, then by the others.
-float median_of_all(const std::vector<float>& values, Ranks& ranks) {
-    constexpr unsigned half = 16;
-    std::uint64_t before = ranks.sum(values.size()) / 2;
-    std::uint32_t high = 0;
-    for (const bool second : {false, true}) {
-        std::vector<std::uint64_t> counts(std::size_t{1} << half, 0);
-        for (const float value : values) {
-            const auto bits = std::bit_cast<std::uint32_t>(value);
-            if (!second)
-                ++counts[bits >> half];
-            else if (bits >> half == high)
-                ++counts[bits & 0xffffu];
-        }
-        counts = sum_of_each(counts, ranks);
-        std::uint32_t place = 0;
-        while (before >= counts[place]) before -= counts[place++];
-        if (second) return std::bit_cast<float>(high << half | place);
-        high = place;
-    }
-    return 0;
-}
 
 ReachOfAll reach_of_all(ScratchCloud& cloud, const Survey& sums, std::span<const VoxelRange> ranges,
                         PartStore& store) {
@@ -70,13 +38,15 @@ ReachOfAll reach_of_all(ScratchCloud& cloud, const Survey& sums, std::span<const
         }
         return true;
     });
-    const double typical = std::sqrt(static_cast<double>(median_of_all(squares, cloud.ranks())));
+    const std::uint64_t points = cloud.ranks().sum(squares.size());
+    const double typical = std::sqrt(static_cast<double>(nth_of_all(squares, points / 2, cloud.ranks())));
     return {typical, 2 * cloud.ranks().sum(volumes) > cloud.ranks().sum(looked_at)};
 }
 
 /// Those of all ranks that a round finds.
 std::vector<PointRow> find_outliers(ScratchCloud& cloud, const Survey& sums,
-                                    std::span<const VoxelRange> ranges, PartStore& store) {
+                                    std::span<const VoxelRange> ranges, PartStore& store,
+                                    const OutlierOptions& options) {
     const ReachOfAll all = reach_of_all(cloud, sums, ranges, store);
     const int finest = sums.finest_leaves();
     std::vector<PointRow> rows;
@@ -84,7 +54,7 @@ std::vector<PointRow> find_outliers(ScratchCloud& cloud, const Survey& sums,
         if (part.lacks_neighbors(NeighborOptions().count)) return false;
         auto [neighbors, known] = PartNeighbors(part, finest, store);
         if (!known.all(part.begin(), part.end()) || !known.all_around(part.begin(), part.end())) return false;
-        const std::vector<std::uint8_t> found = outliers_by_distance(part.octree(), neighbors, all);
+        const std::vector<std::uint8_t> found = outliers_by_distance(part.octree(), neighbors, all, options);
         for (std::size_t i = part.begin(); i < part.end(); ++i)
             if (found[i]) rows.push_back(ScratchCloud::row_at(part.octree(), i));
         refuse_many_strays(rows.size());
@@ -105,11 +75,12 @@ Occurrences occurrences(const std::vector<PointRow>& rows, const ScratchCloud& c
 } // namespace
 
 Occurrences leave_outliers_out(ScratchCloud& cloud, CloudSurvey& survey, const PlanRanges& plan,
-                               std::size_t most, PartStore& store) {
+                               std::size_t most, PartStore& store, const OutlierOptions& options,
+                               std::vector<PointRow>& out) {
     Occurrences total;
-    std::vector<PointRow> out;
-    for (int round = 0; round < OutlierOptions().rounds; ++round) {
-        const std::vector<PointRow> some = find_outliers(cloud, survey.sums, plan(), store);
+    for (int round = 0; round < options.rounds; ++round) {
+        const std::vector<PointRow> some =
+            find_outliers(cloud, survey.sums, plan(cloud, store.first_ghost), store, options);
         if (some.empty()) break;
         total.add(occurrences(some, cloud));
         append_large(out, some);
@@ -119,8 +90,6 @@ Occurrences leave_outliers_out(ScratchCloud& cloud, CloudSurvey& survey, const P
         survey = survey_cloud(cloud, left, most);
         if (some.size() < left / 1000) break; // too few to have hidden others
     }
-    if (total.count > 0 && fit_to_points_left(cloud, most))
-        survey = survey_cloud(cloud, survey.sums.points(), most);
     return total;
 }
 

@@ -62,7 +62,7 @@ void refuse_moved(const std::string& folder, const std::vector<SeenByRank>& seen
 } // namespace
 
 std::string form_of_kept() {
-    constexpr int form = 3; // another one whenever something else is kept, or in another order
+    constexpr int form = 4; // another one whenever something else is kept, or in another order
     std::string text = std::to_string(form).append(":");
     for (const std::size_t size :
          {sizeof(Index), sizeof(PointRow), sizeof(Box), sizeof(ScratchPoints::Cell), sizeof(Occurrences),
@@ -107,7 +107,8 @@ KeptPasses::KeptPasses(KeptScratch* kept, Ranks& ranks) : kept_(kept), ranks_(ra
     std::vector<std::string> used{pieces_name};
     if (done_ != Pass::none) {
         Kept kept_pass = kept_at(last_);
-        used.push_back(std::move(kept_pass.points)), used.push_back(std::move(kept_pass.state));
+        for (std::string* const name : {&kept_pass.points, &kept_pass.beside, &kept_pass.state})
+            used.push_back(std::move(*name));
     }
     kept_->remove_all_but(used);
 }
@@ -134,6 +135,7 @@ std::uint64_t KeptPasses::passes_here() const {
         if (key > last_pass) continue;
         const Kept kept = kept_at(r);
         if (kept_->has_file(kept.points, kept.bytes_of_points)
+            && (kept.beside.empty() || kept_->has_file(kept.beside, kept.bytes_beside))
             && kept_->has_file(kept.state, kept.bytes_of_state))
             passes |= std::uint64_t{1} << key;
     }
@@ -166,8 +168,9 @@ KeptPasses::Kept KeptPasses::kept_at(std::size_t record) const {
     const Bytes bytes = kept_->read(kept_->records()[record]);
     ByteReader reader(bytes);
     Kept kept;
-    kept.points = reader.take_text(), kept.state = reader.take_text();
-    kept.bytes_of_points = reader.take<std::size_t>(), kept.bytes_of_state = reader.take<std::size_t>();
+    for (std::string* const name : {&kept.points, &kept.beside, &kept.state}) *name = reader.take_text();
+    for (std::size_t* const bytes_of : {&kept.bytes_of_points, &kept.bytes_beside, &kept.bytes_of_state})
+        *bytes_of = reader.take<std::size_t>();
     return kept;
 }
 
@@ -179,20 +182,24 @@ KeptPasses::Bytes KeptPasses::state() const {
     return bytes;
 }
 
-void KeptPasses::keep(Pass pass, ScratchCloud& cloud, const Bytes& state) {
+void KeptPasses::keep(Pass pass, ScratchCloud& cloud, ScratchCloud* beside, const Bytes& state) {
     if (!kept_) return;
     cloud.flush_to_disk();
+    if (beside) beside->flush_to_disk();
+    const std::string name_beside = beside ? beside->file_name() : std::string();
     const std::string name = kept_->new_name("state");
     ScratchBytes file({kept_->folder(), name, 0});
     file.append("what a pass has found", state);
     file.flush_to_disk();
     Bytes bytes;
-    put_text(cloud.file_name(), bytes), put_text(name, bytes);
-    put(cloud.bytes(), bytes), put(file.size(), bytes);
+    for (const std::string& each : {cloud.file_name(), name_beside, name}) put_text(each, bytes);
+    for (const std::size_t size : {cloud.bytes(), beside ? beside->bytes() : 0, file.size()})
+        put(size, bytes);
     kept_->keep(static_cast<std::uint64_t>(pass), bytes);
     cloud.note_kept();
+    if (beside) beside->note_kept();
     ranks_.any(false); // once all have it, none goes back to the one before
-    const std::vector<std::string> used{pieces_name, cloud.file_name(), name};
+    const std::vector<std::string> used{pieces_name, cloud.file_name(), name_beside, name};
     kept_->remove_all_but(used);
 }
 

@@ -45,8 +45,9 @@ public:
     bool has(Pass pass) const { return pass <= done_; }
     /// What the last pass was kept with. done() is not none.
     Bytes state() const;
-    /// Of all ranks at the same time. `cloud`: its points stay, those of clouds before are forgotten.
-    void keep(Pass pass, ScratchCloud& cloud, const Bytes& state);
+    /// Of all ranks at the same time. `cloud`, and the one beside it if there is one: their points stay,
+    /// those of clouds before are forgotten.
+    void keep(Pass pass, ScratchCloud& cloud, ScratchCloud* beside, const Bytes& state);
 
     /// The record of a tile, if there is one.
     std::optional<Bytes> tile(std::uint64_t key) const;
@@ -57,8 +58,8 @@ public:
 private:
     /// The record of a pass. Its state is a file of its own, as long as nothing comes after it.
     struct Kept {
-        std::string points, state; ///< files
-        std::size_t bytes_of_points, bytes_of_state;
+        std::string points, beside, state; ///< files
+        std::size_t bytes_of_points, bytes_beside, bytes_of_state;
     };
     Kept kept_at(std::size_t record) const;
     std::uint64_t passes_here() const;

@@ -13,9 +13,10 @@ namespace hsdm {
 class PartStore {
 public:
     /// Nothing is kept on a disk with little room.
-    PartStore(const ScratchCloud& cloud, int first_ghost) : widths(first_ghost), cloud_(cloud) {}
+    PartStore(const ScratchCloud& cloud, int ghost) : first_ghost(ghost), widths(ghost), cloud_(cloud) {}
 
-    PartWidths widths; ///< of the parts
+    const int first_ghost; ///< voxels around a part that is not known
+    PartWidths widths;     ///< of the parts
 
     /// find_neighbors() of a part; where the same were found before, what that gave. Throws Error if the disk
     /// cannot be written or read.

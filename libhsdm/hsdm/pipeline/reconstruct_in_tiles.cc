@@ -6,14 +6,15 @@
 #include "hsdm/errors.hh"
 #include "hsdm/pipeline/choose_resolution.hh"
 #include "hsdm/pipeline/cloud_detail.hh"
-#include "hsdm/pipeline/cloud_distance.hh"
 #include "hsdm/pipeline/cloud_noise.hh"
 #include "hsdm/pipeline/cloud_normals.hh"
+#include "hsdm/pipeline/cloud_smoothing.hh"
 #include "hsdm/pipeline/constants.hh"
 #include "hsdm/pipeline/gather_pieces.hh"
 #include "hsdm/pipeline/kept_passes.hh"
 #include "hsdm/pipeline/make_tiles.hh"
 #include "hsdm/pipeline/options.hh"
+#include "hsdm/pipeline/part_store.hh"
 #include "hsdm/pipeline/stray_search.hh"
 #include "hsdm/pipeline/tile_plan.hh"
 #include "hsdm/pipeline/whole_of_tiles.hh"
@@ -133,6 +134,7 @@ public:
             voxels * (parks ? bytes_per_voxel_parked_in_error : bytes_per_voxel_in_error);
         const double each = bytes_per_error_point(voxels_per_point(survey_->sums));
         const WholeInput in{*cloud_,
+                            as_read_ ? &*as_read_ : nullptr,
                             *survey_,
                             options_,
                             phases_,
@@ -142,9 +144,9 @@ public:
         if (ranks_.is_first())
             result = finish(in, std::move(facets_), std::move(report_));
         else if (options_.measure) {
-            assist_cloud_distance(*cloud_, in.group_points);
+            assist_error(in);
             if (options_.min_component && ranks_.of_first(false)) // small components are out now
-                assist_cloud_distance(*cloud_, in.group_points);
+                assist_error(in);
         }
         how_.ranks = work_.of_all({.points = cloud_->points_here(), .tiles = how_.own_tiles});
         how = how_;
@@ -174,13 +176,15 @@ private:
         put(duplicates_, bytes), put(estimates_, bytes);
         put(known_.has_layers, bytes), put(known_.outliers.has_value(), bytes);
         put(known_.outliers.value_or(Occurrences()), bytes);
+        put(smoothed_, bytes), put(as_read_.has_value(), bytes);
+        if (as_read_) as_read_->put_state(bytes);
         put(report_.input.spacing, bytes);
         put(std::uint64_t{report_.options.size()}, bytes);
         for (const auto& [name, value] : report_.options) put_text(name, bytes), put_text(value, bytes);
         put(std::uint64_t{report_.rejected.size()}, bytes);
         for (const auto& [name, count] : report_.rejected) put_text(name, bytes), put(count, bytes);
         put_vector(normals, bytes);
-        passes_.keep(pass, *cloud_, bytes);
+        passes_.keep(pass, *cloud_, as_read_ ? &*as_read_ : nullptr, bytes);
     }
 
     void take_state() {
@@ -197,6 +201,8 @@ private:
         const bool has_outliers = reader.take<bool>();
         const auto outliers = reader.take<Occurrences>();
         if (has_outliers) known_.outliers = outliers;
+        smoothed_ = reader.take<SmoothReport>();
+        if (reader.take<bool>()) as_read_.emplace(reader, tiles_, ranks_);
         report_.input.spacing = reader.take<double>();
         for (auto count = reader.take<std::uint64_t>(); count > 0; --count) {
             std::string name = reader.take_text();
@@ -238,39 +244,50 @@ private:
         const auto left = tiles_.memory - std::min(tiles_.memory, bytes_of_program);
         const std::function<void(bool, const Ranks::Bytes&)> keep_begun =
             [&](bool sided, const Ranks::Bytes& begun) { keep(sided ? Pass::sided : Pass::cleaned, begun); };
-        const CloudNormalsOptions how{[&] { return plan(group); },
-                                      tiles_.ghost_voxels,
-                                      group,
-                                      left,
-                                      passes_.is_kept() ? keep_begun : nullptr,
+        const CloudNormalsOptions how{passes_of(group), left, passes_.is_kept() ? keep_begun : nullptr,
                                       std::exchange(normals_begun_, {})};
-        const NormalsReport made = make_cloud_normals(*cloud_, *survey_, how);
+        const NormalsReport made = make_cloud_normals(*cloud_, *survey_, how, as_read_);
         known_.outliers = made.outliers;
+        smoothed_ = made.smoothed;
         report_.rejected["normals_near_creases"] = made.bent;
         report_.rejected["normals_missing"] = made.missing;
         report_.rejected["normals_by_volume"] = made.orientation.by_volume;
         report_.rejected["normals_of_layers"] = made.orientation.of_layers;
         known_.has_layers = made.orientation.of_layers > 0;
-        report_.rejected["points_between_sheets"] = 0;
+        report_.rejected["points_between_sheets"] = smoothed_.between.count;
+    }
+
+    /// As prepared clouds have it, for voxels that are chosen.
+    void smooth_for_voxels(double noise, std::size_t group) {
+        if (noise <= relations::smooth_gap * cloud_->voxel_size()) return;
+        PartStore store(*cloud_, tiles_.ghost_voxels);
+        smoothed_ = smooth_cloud(*cloud_, *survey_, noise, passes_of(group).plan, group, store, as_read_);
+        report_.rejected["points_between_sheets"] = smoothed_.between.count;
+    }
+
+    CloudPasses passes_of(std::size_t group) const {
+        return {[this, group](const ScratchCloud& cloud, int ghost) { return plan(cloud, group, ghost); },
+                tiles_.ghost_voxels, group};
     }
 
     /// Where no depth is given voxels follow from the points without outliers, which move to their cube.
     void choose_resolution(std::size_t group) {
         const int ghost = tiles_.ghost_voxels;
         const bool may_be_rough = !estimates_ && is_rough(*survey_);
-        const double noise = may_be_rough ? cloud_noise(*cloud_, *survey_, plan(group), ghost).deviation : 0;
+        const double noise =
+            may_be_rough ? cloud_noise(*cloud_, *survey_, passes_of(group)).deviation : smoothed_.noise;
         if (!estimates_ && (!options_.depth || noise > 0))
             known_.outliers = drop_strays(*cloud_, *survey_, plan(group), ghost, group).outliers;
         report_.input.spacing = survey_->spacing;
         const auto rearrange = [&](const VoxelCube& cube) {
             cloud_->rearrange(cloud_->bounds(), cube.extent, cube.depth, group);
+            if (as_read_) as_read_->rearrange(cloud_->bounds(), cube.extent, cube.depth, group);
             survey_of_cube(group);
         };
         const auto detail = [&](int) { return detail_of(*cloud_, plan(group), ghost); };
         hsdm::choose_resolution(options_, {cloud_->no_points(), cloud_->frame(), noise, rearrange, detail},
                                 report_);
-        if (noise > relations::smooth_gap * cloud_->voxel_size())
-            refuse_in_tiles("points are noisy, and would be moved onto their surface");
+        if (!estimates_) smooth_for_voxels(noise, group);
         if (options_.depth && estimates_) survey_of_cube(group); // with normals
     }
 
@@ -287,6 +304,8 @@ private:
         report_.grid.sets = facets_.counts.sets;
         report_.rejected["normals_turned"] = turned ? survey_->sums.points() : 0;
         note_cloud(*cloud_, *survey_, duplicates_, known_, report_);
+        note_dropped("noisy points between sheets", smoothed_.between, cloud_->frame(), report_);
+        if (smoothed_.noise > 0) report_.rejected["points_moved"] = survey_->sums.points();
         if (!estimates_) report_.rejected["normals_mended"] = 0;
     }
 
@@ -310,9 +329,9 @@ private:
         facets_ = join_tiles(std::move(*pieces), &*store_);
     }
 
-    std::vector<VoxelRange> plan(std::size_t most) const {
-        return plan_tiles(cloud_->cells(), {cloud_->depth(), cloud_->cell_depth(), tiles_.ghost_voxels, most,
-                                            cloud_->borders()});
+    std::vector<VoxelRange> plan(std::size_t most) const { return plan(*cloud_, most, tiles_.ghost_voxels); }
+    static std::vector<VoxelRange> plan(const ScratchCloud& cloud, std::size_t most, int ghost) {
+        return plan_tiles(cloud.cells(), {cloud.depth(), cloud.cell_depth(), ghost, most, cloud.borders()});
     }
     void count_tiles(const std::vector<VoxelRange>& ranges) {
         how_.tiles = ranges.size();
@@ -329,6 +348,8 @@ private:
     const std::size_t bytes_per_voxel_;
     Report report_;
     std::optional<ScratchCloud> cloud_;
+    std::optional<ScratchCloud> as_read_; // where the points were, if they have been moved
+    SmoothReport smoothed_;
     std::optional<CloudSurvey> survey_;
     std::optional<PieceStore> store_;
     std::size_t duplicates_ = 0;

@@ -16,8 +16,6 @@
 namespace hsdm {
 namespace {
 
-constexpr std::size_t most_sampled = std::size_t{1} << 16; // points of a rank, to divide space by
-
 /// Not more than this, for what waits in many small vectors is not of use to large ones once it is freed.
 std::size_t bytes_buffered(const TileOptions& options) {
     return std::clamp(options.memory / 16, std::size_t{1} << 20, std::size_t{1} << 26);
@@ -27,60 +25,6 @@ std::size_t bytes_buffered(const TileOptions& options) {
 std::size_t points_waiting(const TileOptions& options) {
     constexpr std::size_t most = std::size_t{1} << 20;
     return std::min(most, bytes_buffered(options) / sizeof(PointRow));
-}
-
-/// Every so-manieth of points that come one after the other, as few as are wanted.
-void add_to_sample(const PointView& part, std::size_t before, CloudExtent& extent) {
-    for (std::size_t i = (extent.sample_stride - before % extent.sample_stride) % extent.sample_stride;
-         i < part.size(); i += extent.sample_stride) {
-        const Vec3 p = vec3_at(part.positions, i);
-        if (is_finite(p)) extent.sample.push_back(p);
-    }
-    while (extent.sample.size() > most_sampled) {
-        std::vector<Vec3> fewer;
-        for (std::size_t i = 0; i < extent.sample.size(); i += 2) fewer.push_back(extent.sample[i]);
-        extent.sample = std::move(fewer);
-        extent.sample_stride *= 2;
-    }
-}
-
-/// What this rank finds in its part.
-CloudExtent extent_of_part(const PointParts& parts) {
-    CloudExtent extent;
-    parts([&](const PointView& part) {
-        check_view(part);
-        if (part.size() == 0) return;
-        if (extent.points > 0 && extent.has_normals != part.has_normals())
-            refuse_in_tiles("some parts of the cloud have normals and others have none");
-        extent.has_normals = part.has_normals();
-        extent.has_scanners = extent.has_scanners || part.sensor || !part.sensors.empty();
-        if (part.colors.count > 0 || !part.scalars.empty())
-            refuse_in_tiles("the cloud has colours or scalars");
-        const NonfiniteRows nonfinite = find_nonfinite(part.positions);
-        if (nonfinite.count > 0 && extent.nonfinite == 0)
-            extent.first_nonfinite = extent.points + nonfinite.first;
-        extent.nonfinite += nonfinite.count;
-        add_to_sample(part, extent.points, extent);
-        extent.points += part.size();
-        extent.box.add(finite_bounds(part.positions));
-    });
-    return extent;
-}
-
-void put_extent(const CloudExtent& extent, Ranks::Bytes& bytes) {
-    for (const std::size_t count : {extent.points, extent.nonfinite, extent.first_nonfinite})
-        put(count, bytes);
-    put(extent.box, bytes);
-    for (const bool has : {extent.has_normals, extent.has_scanners}) put(has, bytes);
-}
-
-CloudExtent extent_from(ByteReader& bytes) {
-    CloudExtent extent;
-    for (std::size_t* count : {&extent.points, &extent.nonfinite, &extent.first_nonfinite})
-        *count = bytes.take<std::size_t>();
-    extent.box = bytes.take<Box>();
-    extent.has_normals = bytes.take<bool>(), extent.has_scanners = bytes.take<bool>();
-    return extent;
 }
 
 OctreeOptions octree_options(bool use_normals, const Box& whole) {
@@ -96,46 +40,7 @@ ScratchPlace new_place(KeptScratch* kept, const std::string& folder) {
     return kept ? ScratchPlace{kept->folder(), kept->new_name("points"), 0} : ScratchPlace{folder, {}, 0};
 }
 
-/// Adds what the next rank finds.
-void join(const CloudExtent& next, CloudExtent& extent) {
-    if (extent.points > 0 && next.points > 0 && extent.has_normals != next.has_normals)
-        refuse_in_tiles("some parts of the cloud have normals and others have none");
-    extent.has_normals = next.points > 0 ? next.has_normals : extent.has_normals;
-    extent.has_scanners = extent.has_scanners || next.has_scanners;
-    if (extent.nonfinite == 0) extent.first_nonfinite = extent.points + next.first_nonfinite;
-    extent.nonfinite += next.nonfinite;
-    extent.points += next.points;
-    extent.box.add(next.box);
-}
-
 } // namespace
-
-void refuse_in_tiles(const std::string& what) {
-    throw RefusedInTiles(
-        what + "; this is not done in tiles, reconstruct it in one piece (by hsdm, without --memory)");
-}
-
-CloudExtent measure_extent(const PointParts& parts, Ranks& ranks) {
-    CloudExtent own = extent_of_part(parts), extent;
-    Ranks::Bytes bytes;
-    put_extent(own, bytes);
-    for (const Ranks::Bytes& got : ranks.gather(bytes)) {
-        ByteReader reader(got);
-        join(extent_from(reader), extent);
-    }
-    extent.sample = std::move(own.sample);
-    extent.sample_stride = own.sample_stride;
-    if (extent.points == 0) throw Error("the cloud holds no point; nothing can be reconstructed");
-    if (extent.points >= no_index) refuse_in_tiles("the cloud holds 2^32 points or more");
-    if (2 * extent.nonfinite > extent.points)
-        throw Error(std::to_string(extent.nonfinite) + " of " + std::to_string(extent.points)
-                    + " points have coordinates that are not finite; check how the file was exported");
-    const Vec3 zero(0, 0, 0); // -0 becomes 0, as in the octree
-    extent.box = {extent.box.lo + zero, extent.box.hi + zero};
-    if (CloudFrame(extent.box).unit() != 1) refuse_in_tiles("the cloud is of extreme size");
-    if (!has_voxels(extent.box)) throw Error("all points are equal; a surface needs points that differ");
-    return extent;
-}
 
 ScratchCloud::ScratchCloud(const PointParts& parts, const CloudExtent& extent, int depth,
                            const TileOptions& options, Ranks& ranks, bool use_normals)
@@ -490,13 +395,18 @@ void ScratchCloud::leave_out(std::vector<PointRow> rows) {
     ++version_;
 }
 
-Box ScratchCloud::box_of_points(std::size_t most) const {
+Box ScratchCloud::box_in_cube(std::size_t most) const {
     Box own, all;
     for_groups(most, [&](const Octree& part) { own.add(bounds_of(part.positions)); });
     Ranks::Bytes bytes;
     put(own, bytes);
     for (const Ranks::Bytes& got : ranks_.gather(bytes)) all.add(ByteReader(got).take<Box>());
-    return {all.lo + origin(), all.hi + origin()};
+    return all;
+}
+
+Box ScratchCloud::box_of_points(std::size_t most) const {
+    const Box box = box_in_cube(most);
+    return {box.lo + origin(), box.hi + origin()};
 }
 
 ScratchCloud::ScratchCloud(const ScratchCloud& before, const Box& bounds, double extent, int depth)
@@ -578,21 +488,40 @@ ScratchCloud ScratchCloud::without_points() const {
     return next;
 }
 
-ScratchCloud ScratchCloud::without_normals_yet() const {
+ScratchCloud ScratchCloud::emptied(bool has_normals) const {
     ScratchCloud next = without_points();
-    next.has_normals_ = true;
+    next.has_normals_ = has_normals;
     return next;
 }
 
 void ScratchCloud::add(const Octree& octree, std::size_t point) {
-    scratch_->add(octree.codes[point] >> 3 * (morton_levels - cell_depth_), row_at(octree, point));
+    add(octree.codes[point], row_at(octree, point));
+}
+
+void ScratchCloud::add(MortonCode code, const PointRow& row) {
+    scratch_->add(code >> 3 * (morton_levels - cell_depth_), row);
+}
+
+void ScratchCloud::finish_sorted() {
+    scratch_->finish();
+    gather_cells();
+    in_order_ = true;
 }
 
 void ScratchCloud::take_sorted(ScratchCloud&& next) {
-    next.scratch_->finish();
-    next.gather_cells();
-    next.in_order_ = true;
+    next.finish_sorted();
     take(std::move(next));
+}
+
+void ScratchCloud::fill(
+    const std::function<void(const std::function<void(const PointRow&)>& put_row)>& work) {
+    const auto cell_of_row = [&](const PointRow& row) { return cell_of(relative_place(row)); };
+    PointExchange exchange(ranks_, most_waiting_,
+                           [&](const PointRow& row) { scratch_->add(cell_of_row(row), row); });
+    work([&](const PointRow& row) { put_row(row, cell_of_row(row), exchange); });
+    exchange.finish();
+    scratch_->finish();
+    gather_cells();
 }
 
 } // namespace hsdm

@@ -2,9 +2,9 @@
 // A whole cloud on disk, sorted by cells of its octree, and the parts of it that are looked at one at a time.
 
 #include "hsdm/cloud/cloud_frame.hh"
-#include "hsdm/core/ranks.hh"
 #include "hsdm/io/scratch_points.hh"
 #include "hsdm/octree/octree.hh"
+#include "hsdm/pipeline/cloud_extent.hh"
 #include "hsdm/pipeline/reconstruct_in_tiles.hh"
 #include "hsdm/pipeline/voxel_range.hh"
 
@@ -15,28 +15,6 @@ namespace hsdm {
 
 class KeptScratch;
 class PointExchange;
-
-/// Throws RefusedInTiles of a cloud that can be reconstructed, but not in tiles.
-[[noreturn]] void refuse_in_tiles(const std::string& what);
-
-/// What a pass over the points finds.
-struct CloudExtent {
-    std::size_t points = 0, nonfinite = 0;
-    std::size_t first_nonfinite = 0; ///< if there is one
-    Box box;                         ///< of those that are finite
-    bool has_normals = false;        ///< have all, or none?
-    bool has_scanners = false;       ///< is it known where they were seen from?
-
-    std::size_t finite() const { return points - nonfinite; }
-
-    /// Some points of this rank's part, each standing for so many.
-    std::vector<Vec3> sample{};
-    std::size_t sample_stride = 1;
-};
-
-/// One pass over the points, each rank over its part: what all of them find. Throws Error for what is no
-/// cloud, or none that is done in tiles.
-CloudExtent measure_extent(const PointParts& parts, Ranks& ranks);
 
 /// The finite points of a cloud, on disk but for those left out. Each rank has those of a range of cells, in
 /// Morton order, and about as many as each other; what it is asked for of other cells it fetches from theirs.
@@ -59,6 +37,7 @@ public:
     std::size_t version() const { return version_; } ///< another one each time that points change
 
     const CloudExtent& extent() const { return extent_; } ///< as it was measured
+    bool has_normals() const { return has_normals_; }
     const Box& bounds() const { return none_.bounds; }
     const CloudFrame& frame() const { return frame_; }
     Ranks& ranks() const { return ranks_; }
@@ -110,15 +89,28 @@ public:
     /// As rearrange() of an octree with this box, but in voxels of this depth: all points go to a new file,
     /// `most` or a cell's at a time. For all ranks at the same time.
     void rearrange(const Box& bounds, double extent, int depth, std::size_t most);
-    /// The box of the points that are not left out, in the cloud's coordinates. For all ranks.
+    /// The box of the points that are not left out, relative to the cube, and in the cloud's coordinates. For
+    /// all ranks at the same time.
+    Box box_in_cube(std::size_t most) const;
     Box box_of_points(std::size_t most) const;
     static PointRow row_at(const Octree& octree, std::size_t point);
     /// The same cube and cells of the same ranks, for points with normals, which add() gives it: of a cell in
     /// the order of octrees.
-    ScratchCloud without_normals_yet() const;
+    ScratchCloud without_normals_yet() const { return emptied(true); }
     void add(const Octree& octree, std::size_t point);
+    void add(MortonCode code, const PointRow& row); ///< the same; `code`: of level 21
+    /// All have been added. For all ranks at the same time.
+    void finish_sorted();
     /// Has the points of such a one from now on. For all ranks at the same time.
     void take_sorted(ScratchCloud&& next);
+
+    /// The same cube and ranks without points: these come by add(), or by fill() in any order.
+    ScratchCloud emptied(bool has_normals) const;
+    /// work(put_row) calls put_row(row) for points relative to the cube, each of which goes to the rank that
+    /// has its cell. For all ranks at the same time.
+    void fill(const std::function<void(const std::function<void(const PointRow&)>& put_row)>& work);
+    /// Has the points of that one from now on.
+    void replace_by(ScratchCloud&& next) { take(std::move(next)); }
 
 private:
     /// Without points yet: those of another one, in another cube.

@@ -40,10 +40,14 @@ void check_whole(const WholeInput& in, const MethodInput& method, const PolygonM
         refuse_in_tiles("a slit has to be closed (--holes keep would leave it)");
 }
 
-/// Distances of points, group by group. Returns the points that the mesh leaves out.
+/// Distances of points, group by group. Returns the points that the mesh leaves out, and not because of their
+/// noise.
 Occurrences measure_error(const WholeInput& in, const PolygonMesh& facets, Report& report) {
     Occurrences off;
-    const Distance distance = cloud_distance(in.cloud, facets, in.group_points, off);
+    const ScratchCloud& measured = in.as_read ? *in.as_read : in.cloud;
+    const Distance distance = cloud_distance(measured, facets, in.group_points, off);
+    if (in.as_read && in.cloud.ranks().of_first(off.count > 0))
+        cloud_distance(in.cloud, facets, in.group_points, off);
     report.error.points_to_mesh_max = distance.max;
     report.error.points_to_mesh_mean = distance.mean;
     report.error.points_to_mesh_rms = distance.rms;
@@ -212,6 +216,11 @@ private:
 };
 
 } // namespace
+
+void assist_error(const WholeInput& in) {
+    assist_cloud_distance(in.as_read ? *in.as_read : in.cloud, in.group_points);
+    if (in.as_read && in.cloud.ranks().of_first(false)) assist_cloud_distance(in.cloud, in.group_points);
+}
 
 WholeFacets join_tiles(std::vector<Piece>&& pieces, const PieceStore* store) {
     WholeFacets whole;

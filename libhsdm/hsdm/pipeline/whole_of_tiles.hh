@@ -21,6 +21,7 @@ WholeFacets join_tiles(std::vector<Piece>&& pieces, const PieceStore* store = nu
 /// What the whole is made of, beside its facets.
 struct WholeInput {
     const ScratchCloud& cloud;
+    const ScratchCloud* as_read; ///< where its points were, if they have been moved; else null
     const CloudSurvey& survey;
     const ReconstructOptions& options;
     const Phases& phases;
@@ -28,6 +29,9 @@ struct WholeInput {
     /// Where arrays of the mesh wait while nothing reads them; null: in memory.
     const ScratchPlace* parking = nullptr;
 };
+
+/// On all ranks but the first, each time that this one measures the error.
+void assist_error(const WholeInput& in);
 
 /// What is left once there are facets: slits, what is unsound, the error, features. Throws Error if something
 /// was taken for granted of the whole that is not so; Cancelled.
