@@ -103,25 +103,8 @@ std::vector<Vec3> turned_by_positions(const Octree& octree, const Neighbors& nei
     turn_along(octree.normals, told.normals);
     turn_normals(orient_normals(octree, neighbors, told, options), told.normals);
     std::vector<Vec3> turned = octree.normals;
-    for_each_index(octree.size(), chunks::light, [&](Index i) {
-        double side = 0;
-        for (const Index j : neighbors.of(i)) {
-            const double cosine = told.normals[j] | turned[i];
-            side += cosine * cosine * cosine;
-        }
-        if (side < 0) turned[i] = -turned[i];
-    });
+    turn_to_neighbors(told.normals, neighbors, turned);
     return turned;
-}
-
-/// Did turning leave more than half of the contradictions? Or did it double those at creases where these have
-/// no say? Turned normals contradict each other there, too, but those of two sides of a wall near each other
-/// do only once one of them faces in.
-bool came_of_noise(const NormalConsistency& before, const NormalConsistency& after) {
-    const bool creases_count = !before.askew();
-    if (2 * after.contradiction(creases_count) > before.contradiction(creases_count)) return true;
-    return !creases_count && after.creased_opposed >= contradictions::fewest
-           && after.creased_opposed > 2 * before.creased_opposed;
 }
 
 } // namespace
@@ -200,6 +183,25 @@ NormalConsistency check_normals(const Octree& octree, double spacing) {
 NormalConsistency check_normals(const NormalSample& sample, std::size_t size, double spacing) {
     return check_pairs(
         size, [&](std::size_t i) -> const NormalSample::Point& { return sample.at(i, size); }, spacing);
+}
+
+void turn_to_neighbors(const std::vector<Vec3>& told, const Neighbors& neighbors,
+                       std::vector<Vec3>& normals) {
+    for_each_index(normals.size(), chunks::light, [&](Index i) {
+        double side = 0;
+        for (const Index j : neighbors.of(i)) {
+            const double cosine = told[j] | normals[i];
+            side += cosine * cosine * cosine;
+        }
+        if (side < 0) normals[i] = -normals[i];
+    });
+}
+
+bool came_of_noise(const NormalConsistency& before, const NormalConsistency& after) {
+    const bool creases_count = !before.askew();
+    if (2 * after.contradiction(creases_count) > before.contradiction(creases_count)) return true;
+    return !creases_count && after.creased_opposed >= contradictions::fewest
+           && after.creased_opposed > 2 * before.creased_opposed;
 }
 
 std::size_t mend_normals(Octree& octree, OrientOptions options) {

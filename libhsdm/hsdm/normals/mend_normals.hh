@@ -55,6 +55,13 @@ struct NormalSample {
 /// The same of a sample of a cloud of `size` points of this spacing.
 NormalConsistency check_normals(const NormalSample& sample, std::size_t size, double spacing);
 
+/// Turns each normal to the side that told ones of its neighbours have, those most along it most.
+void turn_to_neighbors(const std::vector<Vec3>& told, const Neighbors& neighbors, std::vector<Vec3>& normals);
+/// Did turning leave more than half of the contradictions? Or did it double those at creases where these have
+/// no say? Turned normals contradict each other there, too, but those of two sides of a wall near each other
+/// do only once one of them faces in.
+bool came_of_noise(const NormalConsistency& before, const NormalConsistency& after);
+
 /// Turns the octree's normals to one side, in place; their axes stay. The evidence is that of orient_normals
 /// with these options, for the given axes, or for those of the positions where the given ones lie askew;
 /// where the shape leaves the side open (a sheet, a thin part), the side that most normals have is taken. If

@@ -29,10 +29,8 @@ std::vector<std::int8_t> free_signs(const Patches& patches, const Signs& signs,
                                          : patches.centroids[p] - centre[c] / points[c];
         side[c] += (patches.normals[p] | from) * signs.sign[p] * patches.counts[p];
     });
-    for_each_in_order(options.signs_count ? patches.of_point.size() : 0, [&](std::size_t i) {
-        if (const Index p = patches.of_point[i]; p != no_index)
-            side[signs.component[p]] += patches.sign[i] * signs.sign[p];
-    });
+    for_each_in_order(options.signs_count ? patches.size() : 0,
+                      [&](std::size_t p) { side[signs.component[p]] += patches.sides[p] * signs.sign[p]; });
     std::vector<std::int8_t> sign(signs.components, 1);
     for (std::size_t c = 0; c < sign.size(); ++c)
         if (side[c] < 0) sign[c] = -1;

@@ -56,8 +56,8 @@ Orientation orient_normals(
 
 /// The last step of that, of all patches of a cloud: by the evidence between them, by what they see of the
 /// outside, and by the scanners (per patch, as in Viewpoints; none: empty). evidence_of_layers() is asked
-/// where the evidence contradicts itself; the signs in what it gives are found here. Of `patches` what is of
-/// points is read for OrientOptions::signs_count alone.
+/// where the evidence contradicts itself; the signs in what it gives are found here. Of `patches` nothing
+/// is read that is of points.
 struct PatchSigns {
     std::vector<std::int8_t> sign; ///< per patch, -1 if its normal is to be turned
     OrientReport report;

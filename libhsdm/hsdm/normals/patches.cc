@@ -30,6 +30,7 @@ public:
         assign_large(result_.centroids, first.back(), Vec3(0, 0, 0));
         assign_large(result_.normals, first.back(), Vec3(0, 0, 0));
         assign_large(result_.counts, first.back(), 0);
+        assign_large(result_.sides, first.back(), 0);
         for_chunks(leaves, chunks::heavy, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
             sum_points(neighbors_.leaf_first[begin], neighbors_.leaf_first[end], first[chunk]);
             for (Index p = first[chunk]; p < first[chunk + 1]; ++p) {
@@ -81,7 +82,7 @@ private:
             const Index p = result_.of_point[i] += base;
             result_.centroids[p] += octree_.positions[i];
             result_.normals[p] += estimate_.normals[i] * result_.sign[i];
-            ++result_.counts[p];
+            ++result_.counts[p], result_.sides[p] += result_.sign[i];
         }
     }
 

@@ -8,11 +8,12 @@
 namespace hsdm {
 
 struct Patches {
-    std::vector<Index> of_point;   ///< per point, its patch; no_index for points without a normal
-    std::vector<std::int8_t> sign; ///< per point, +1 or -1: its normal relative to its patch's
-    std::vector<Vec3> centroids;   ///< per patch, relative to the octree's origin
-    std::vector<Vec3> normals;     ///< per patch, unit, of either sign
-    std::vector<Index> counts;     ///< per patch, points
+    std::vector<Index> of_point;     ///< per point, its patch; no_index for points without a normal
+    std::vector<std::int8_t> sign;   ///< per point, +1 or -1: its normal relative to its patch's
+    std::vector<Vec3> centroids;     ///< per patch, relative to the octree's origin
+    std::vector<Vec3> normals;       ///< per patch, unit, of either sign
+    std::vector<Index> counts;       ///< per patch, points
+    std::vector<std::int32_t> sides; ///< per patch, of these, those with its sign less the others
 
     std::size_t size() const { return counts.size(); }
 };

@@ -33,6 +33,14 @@ double median_angle(const std::vector<Vec3>& normals) {
     return median_angle(normals.size(), [&](std::size_t i) -> const Vec3& { return normals[i]; });
 }
 
+double median_angle(const NormalSample& sample, std::size_t size) {
+    return median_angle(size, [&](std::size_t i) -> const Vec3& { return sample.at(i, size).normal; });
+}
+
+bool are_steadier(double angle, double of_given) {
+    return angle <= 0.5 * of_given;
+}
+
 } // namespace
 
 bool are_scattered(const Octree& octree) {
@@ -40,8 +48,18 @@ bool are_scattered(const Octree& octree) {
 }
 
 bool are_scattered(const NormalSample& sample, std::size_t size) {
-    const auto normal = [&](std::size_t i) -> const Vec3& { return sample.at(i, size).normal; };
-    return median_angle(size, normal) > scattered_normals::least;
+    return median_angle(sample, size) > scattered_normals::least;
+}
+
+bool are_steadier(const NormalSample& told, const NormalSample& given, std::size_t size) {
+    return are_steadier(median_angle(told, size), median_angle(given, size));
+}
+
+bool take_axis(const Vec3& told, Vec3& normal) {
+    const double cosine = told | normal;
+    if (std::abs(cosine) < angles::facing) return false;
+    normal = cosine < 0 ? -told : told;
+    return true;
 }
 
 std::size_t steady_normals(Octree& octree) {
@@ -49,17 +67,11 @@ std::size_t steady_normals(Octree& octree) {
     const Neighbors neighbors = find_neighbors(octree);
     EstimatedNormals told = estimate_normals(octree, neighbors);
     told.normals = refined_normals(octree, neighbors, told);
-    // of clean normals both scatter alike, to a tenth
-    if (median_angle(told.normals) > 0.5 * median_angle(octree.normals)) return 0;
+    if (!are_steadier(median_angle(told.normals), median_angle(octree.normals))) return 0;
     turn_along(octree.normals, told.normals);
     vote_on_normals(octree, neighbors, told); // near creases: with the sides they have now
     std::size_t changed = 0;
-    for (std::size_t i = 0; i < octree.size(); ++i) {
-        const double cosine = told.normals[i] | octree.normals[i];
-        if (std::abs(cosine) < angles::facing) continue;
-        octree.normals[i] = cosine < 0 ? -told.normals[i] : told.normals[i];
-        ++changed;
-    }
+    for (std::size_t i = 0; i < octree.size(); ++i) changed += take_axis(told.normals[i], octree.normals[i]);
     return changed;
 }
 

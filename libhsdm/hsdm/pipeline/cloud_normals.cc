@@ -1,295 +1,17 @@
 #include "hsdm/pipeline/cloud_normals.hh"
 
-#include "hsdm/core/large_vector.hh"
-#include "hsdm/errors.hh"
 #include "hsdm/normals/arcs.hh"
 #include "hsdm/normals/noise.hh"
 #include "hsdm/normals/vote_on_normals.hh"
+#include "hsdm/pipeline/cloud_signs.hh"
 #include "hsdm/pipeline/cloud_smoothing.hh"
-#include "hsdm/pipeline/part_store.hh"
 #include "hsdm/pipeline/stray_search.hh"
 
 #include <algorithm>
-#include <cmath>
 #include <optional>
 
 namespace hsdm {
 namespace {
-
-/// How normals are estimated in all parts.
-struct Estimating {
-    NeighborOptions neighbors;
-    EstimateOptions estimate;
-};
-
-/// Unoriented normals of a part and its patches, with their number in the whole: that of their first point.
-class PartNormals {
-public:
-    PartNormals(const CloudPart& part, const Estimating& how, PartStore& store)
-        : part_(part),
-          neighbors(store.neighbors(part, how.neighbors)),
-          estimate(estimate_normals(part.octree(), neighbors, how.estimate)),
-          known(part.known_by(neighbors)),
-          patches(build_patches(part.octree(), neighbors, estimate)) {
-        known.step();                                       // what is bent hangs on how far neighbours spread
-        known.step(estimate.bent, 2 * how.estimate.rounds); // as estimate_normals() renews them
-        known.step_leaves();
-        for (std::size_t i = 0; i < part.octree().size(); ++i)
-            if (patches.of_point[i] == first_point.size()) first_point.push_back(static_cast<Index>(i));
-    }
-
-    Index number(Index patch) const { return part_.number(first_point[patch]); }
-
-private:
-    const CloudPart& part_;
-
-public:
-    Neighbors neighbors;
-    EstimatedNormals estimate;
-    KnownPoints known;
-    Patches patches;
-    std::vector<Index> first_point; ///< per patch
-};
-
-/// A patch of the whole, by the numbers that patches have there.
-struct PatchRow {
-    Index number, count;
-    Vec3 centroid, normal;
-    Sights sights;
-    std::uint8_t beside; ///< as sheets_beside(), if sheets may be layers
-};
-
-/// What is gathered of all parts to tell the sides.
-struct SideEvidence {
-    std::vector<PatchRow> patches;
-    std::vector<SignedEdge> edges;
-    std::vector<SignedEdge> layers; ///< as layer_evidence(), if sheets may be layers
-};
-
-/// Bytes that the first rank holds while it tells the sides: of a patch, and of what pairs of points say.
-constexpr std::size_t bytes_per_patch = 300, bytes_per_edge = 80;
-
-/// Throws Error where so many do not fit. `how`: that they are all, or more than.
-void refuse_large(std::size_t patches, std::size_t edges, std::size_t memory, const char* how) {
-    const std::size_t bytes = patches * bytes_per_patch + edges * bytes_per_edge;
-    if (bytes > memory)
-        throw Error(std::string("telling the sides of normals takes ") + how + " "
-                    + std::to_string((bytes + 999999) / 1000000)
-                    + " MB, which is held in memory; give --memory that much, or a cloud with normals");
-}
-
-/// The empty space of the whole cloud.
-EmptySpace space_of(const ScratchCloud& cloud, double spacing, std::size_t most) {
-    const int depth = depth_of_space(cloud.cube_extent(), spacing);
-    std::vector<MortonCode> codes;
-    cloud.for_groups(most,
-                     [&](const Octree& part) { append_large(codes, extract_level(part, depth).codes); });
-    std::vector<MortonCode> all = values_of_all(cloud.ranks(), codes);
-    sort_unique(all);
-    return EmptySpace(all, depth);
-}
-
-/// Looks at the parts for what tells the sides.
-class EvidencePass {
-public:
-    /// `memory`: bytes that what is found may take, else it throws Error.
-    EvidencePass(const Estimating& how, const EmptySpace& space, double spacing, bool may_be_layers,
-                 std::size_t memory, PartStore& store)
-        : how_(how),
-          space_(space),
-          spacing_(spacing),
-          may_be_layers_(may_be_layers),
-          memory_(memory),
-          store_(store) {}
-
-    SideEvidence evidence;
-
-    /// Returns false, and takes nothing, if not all is known.
-    bool add(const CloudPart& part) {
-        if (part.lacks_neighbors(how_.neighbors.count)) return false;
-        const PartNormals made(part, how_, store_);
-        const std::vector<Index>& leaves = made.neighbors.leaf_first; // its own begin with its own points
-        const auto leaf_at = [&](std::size_t point) {
-            return static_cast<std::size_t>(std::ranges::lower_bound(leaves, point) - leaves.begin());
-        };
-        const std::size_t begin = leaf_at(part.begin()), end = leaf_at(part.end());
-        const Index first = leaves[begin], last = leaves[end];
-        // Own points before `first` are of a leaf that begins before the range, if it does so in the whole.
-        if (!made.known.all(part.begin(), last) || !made.known.all_around(first, last)) return false;
-        const auto patch_at = [&](Index point) {
-            return static_cast<Index>(std::ranges::lower_bound(made.first_point, point)
-                                      - made.first_point.begin());
-        };
-        const Index first_patch = patch_at(first), last_patch = patch_at(last);
-        if (!see_all(part, made.patches, first_patch, last_patch)) return false;
-        const OctreeLevel level = extract_level(part.octree(), space_.depth());
-        const std::vector<Sights> seen =
-            look_around(part.octree(), level, space_, made.patches, spacing_, first_patch, last_patch);
-        for (const Sights& sights : seen)
-            for (const Sight& sight : sights)
-                if (!knows(made, level, sight)) return false;
-        std::vector<std::uint8_t> beside(made.patches.size(), 0);
-        if (may_be_layers_) {
-            beside = sheets_beside(part.octree(), made.neighbors, made.estimate, made.patches);
-            take(made, layer_evidence(part.octree(), made.neighbors, made.estimate, made.patches, begin, end),
-                 evidence.layers);
-        }
-        for (Index p = first_patch; p < last_patch; ++p)
-            take_patch(made, p, seen[p - first_patch], beside[p]);
-        take(made, patch_evidence(part.octree(), made.neighbors, made.estimate, made.patches, begin, end),
-             evidence.edges);
-        refuse_large(evidence.patches.size(), evidence.edges.size() + evidence.layers.size(), memory_,
-                     "more than");
-        return true;
-    }
-
-private:
-    /// Has the part all that these patches may see?
-    bool see_all(const CloudPart& part, const Patches& patches, Index begin, Index end) const {
-        const double h = part.octree().voxel_size(space_.depth());
-        for (Index p = begin; p < end; ++p) {
-            VoxelCoord at;
-            for (unsigned k = 0; k < 3; ++k)
-                at[k] = static_cast<std::int32_t>(std::floor(patches.centroids[p][k] / h));
-            if (!part.has_around(at, space_.depth(), depth_of_sight())) return false;
-        }
-        return true;
-    }
-
-    /// Does the patch see the same in the whole? A sheet whose points have no normal here may have one there.
-    static bool knows(const PartNormals& made, const OctreeLevel& level, const Sight& sight) {
-        if (sight.patch != no_index) return made.known[made.first_point[sight.patch]];
-        const Index voxel = sight.region == no_index ? level.find(sight.voxel) : no_index;
-        if (voxel == no_index) return true;
-        for (Index i = level.first_point[voxel]; i < level.first_point[voxel + 1]; ++i)
-            if (made.patches.of_point[i] == no_index && !made.known[i]) return false;
-        return true;
-    }
-
-    void take_patch(const PartNormals& made, Index p, Sights sights, std::uint8_t beside) {
-        for (Sight& sight : sights)
-            if (sight.patch != no_index) sight.patch = made.number(sight.patch);
-        push_large(evidence.patches,
-                   PatchRow{made.number(p), made.patches.counts[p], made.patches.centroids[p],
-                            made.patches.normals[p], sights, beside});
-    }
-    static void take(const PartNormals& made, std::vector<SignedEdge> found, std::vector<SignedEdge>& all) {
-        for (SignedEdge& edge : found) edge.a = made.number(edge.a), edge.b = made.number(edge.b);
-        append_large(all, found);
-    }
-
-    const Estimating& how_;
-    const EmptySpace& space_;
-    double spacing_;
-    bool may_be_layers_;
-    std::size_t memory_;
-    PartStore& store_;
-};
-
-/// On the first rank: what all have found. Others are left with nothing.
-SideEvidence gathered(SideEvidence&& own, Ranks& ranks, std::size_t memory) {
-    refuse_large(ranks.sum(own.patches.size()), ranks.sum(own.edges.size() + own.layers.size()), memory,
-                 "about");
-    if (ranks.size() == 1) return std::move(own);
-    std::vector<Ranks::Bytes> out(static_cast<std::size_t>(ranks.size()));
-    put_vector(own.patches, out.front());
-    put_vector(own.edges, out.front());
-    put_vector(own.layers, out.front());
-    own = {};
-    for (const Ranks::Bytes& got : ranks.exchange(std::move(out))) {
-        if (got.empty()) continue;
-        ByteReader reader(got);
-        append_large(own.patches, reader.take_vector<PatchRow>());
-        append_large(own.edges, reader.take_vector<SignedEdge>());
-        append_large(own.layers, reader.take_vector<SignedEdge>());
-    }
-    return std::move(own);
-}
-
-/// Numbers of all patches, ascending, and their signs.
-struct SignsOfAll {
-    std::vector<Index> number;
-    std::vector<std::int8_t> sign;
-    OrientReport report;
-
-    Index place(Index patch) const {
-        const auto at = std::ranges::lower_bound(number, patch);
-        if (at == number.end() || *at != patch)
-            throw Error(
-                "no part took patch " + std::to_string(patch)
-                + ", a fault of hsdm; reconstruct the cloud in one piece (by hsdm, without --memory)");
-        return static_cast<Index>(at - number.begin());
-    }
-};
-
-/// What is of patches, as make_normals() has it.
-struct WholeEvidence {
-    Patches patches; ///< without what is of points
-    std::vector<Sights> seen;
-    std::vector<std::uint8_t> beside;
-};
-
-/// The evidence of all patches as make_normals() has it: in the order of their numbers, which become their
-/// places in it. Leaves `all` without what is of patches.
-WholeEvidence whole_evidence(SideEvidence& all, SignsOfAll& result) {
-    std::ranges::sort(all.patches, {}, &PatchRow::number);
-    WholeEvidence whole;
-    for (const PatchRow& row : all.patches) {
-        push_large(result.number, row.number);
-        push_large(whole.patches.counts, row.count);
-        push_large(whole.patches.centroids, row.centroid);
-        push_large(whole.patches.normals, row.normal);
-        push_large(whole.seen, row.sights);
-        push_large(whole.beside, row.beside);
-    }
-    release(all.patches);
-    for (Sights& sights : whole.seen)
-        for (Sight& sight : sights)
-            if (sight.patch != no_index) sight.patch = result.place(sight.patch);
-    for (std::vector<SignedEdge>* edges : {&all.edges, &all.layers})
-        for (SignedEdge& edge : *edges) edge.a = result.place(edge.a), edge.b = result.place(edge.b);
-    return whole;
-}
-
-/// None if it takes the evidence of layers, which `all` has not.
-std::optional<SignsOfAll> signs_of(SideEvidence&& all, const EmptySpace& space, bool may_be_layers) {
-    SignsOfAll result;
-    const WholeEvidence whole = whole_evidence(all, result);
-    bool lacks_layers = false;
-    PatchSigns signs = sign_patches(
-        whole.patches, std::move(all.edges), judge_sights(space, whole.seen, whole.patches), {}, {},
-        [&]() -> LayerReading {
-            lacks_layers = !may_be_layers;
-            std::vector<std::int8_t> sky(whole.patches.size(), 0);
-            if (may_be_layers) sky = judge_sights(space, whole.seen, whole.patches, whole.beside).sky;
-            return {.edges = std::move(all.layers), .sky = std::move(sky), .signs = {}, .skyward = {}};
-        });
-    if (lacks_layers) return std::nullopt;
-    result.sign = std::move(signs.sign);
-    result.report = signs.report;
-    return result;
-}
-
-/// What the first rank finds, if it does.
-std::optional<SignsOfAll> signs_of_all(SideEvidence&& own, const EmptySpace& space, bool may_be_layers,
-                                       Ranks& ranks, std::size_t memory) {
-    SideEvidence all = gathered(std::move(own), ranks, memory);
-    Ranks::Bytes bytes;
-    if (ranks.is_first())
-        if (const auto found = signs_of(std::move(all), space, may_be_layers)) {
-            put(found->report, bytes);
-            put_vector(found->number, bytes);
-            put_vector(found->sign, bytes);
-        }
-    const Ranks::Bytes got = ranks.of_first(std::move(bytes));
-    if (got.empty()) return std::nullopt;
-    ByteReader reader(got);
-    SignsOfAll result;
-    result.report = reader.take<OrientReport>();
-    result.number = reader.take_vector<Index>();
-    result.sign = reader.take_vector<std::int8_t>();
-    return result;
-}
 
 /// Gives the parts' points normals with their sides.
 class SidedPass {
@@ -304,13 +26,11 @@ public:
         if (part.lacks_neighbors(how_.neighbors.count)) return false;
         PartNormals made(part, how_, store_);
         EstimatedNormals& estimate = made.estimate;
-        std::vector<std::int8_t> sign(made.patches.size(), 1); // of patches that are not known
-        for (Index p = 0; p < sign.size(); ++p)
-            if (made.known[made.first_point[p]]) sign[p] = signs_.sign[signs_.place(made.number(p))];
+        const std::vector<std::uint8_t> turns = turns_of(made.patches, made.signs(signs_));
         std::vector<Vec3> refined = refined_normals(part.octree(), made.neighbors, estimate);
         made.known.step();
         if (estimate.noise > estimation::rough) made.known.step();
-        turn_normals({turns_of(made.patches, sign), {}}, refined);
+        turn_normals({turns, {}}, refined);
         estimate.normals = std::move(refined);
         vote_on_normals(part.octree(), made.neighbors, estimate);
         made.known.step(estimate.bent, repeats::twice);
@@ -381,20 +101,6 @@ void clean(ScratchCloud& cloud, CloudSurvey& survey, const CloudPasses& passes, 
     report.noise = *begun.how.estimate.noise;
 }
 
-/// In one pass, and one more where sheets may be layers.
-SignsOfAll find_signs(ScratchCloud& cloud, const CloudSurvey& survey, std::span<const VoxelRange> ranges,
-                      const Estimating& how, const CloudNormalsOptions& options, PartStore& store) {
-    const EmptySpace space = space_of(cloud, survey.spacing, options.passes.most_points);
-    for (bool may_be_layers = false;; may_be_layers = true) {
-        EvidencePass pass(how, space, survey.spacing, may_be_layers, options.memory, store);
-        for_parts(cloud, survey.sums, ranges, store.widths,
-                  [&](const CloudPart& part) { return pass.add(part); });
-        if (auto signs =
-                signs_of_all(std::move(pass.evidence), space, may_be_layers, cloud.ranks(), options.memory))
-            return std::move(*signs);
-    }
-}
-
 Ranks::Bytes bytes_of_begun(const Begun& begun) {
     Ranks::Bytes bytes;
     put(begun.is_sided, bytes), put(begun.report, bytes), put(begun.how, bytes);
@@ -427,14 +133,14 @@ NormalsReport make_cloud_normals(ScratchCloud& cloud, CloudSurvey& survey, const
         clean(cloud, survey, options.passes, store, as_read, begun);
         keep(false);
     }
-    const std::vector<VoxelRange> ranges = options.passes.plan(cloud, options.passes.ghost_voxels);
     if (!begun.is_sided) {
-        begun.signs = find_signs(cloud, survey, ranges, begun.how, options, store);
+        begun.signs = find_signs(cloud, survey, begun.how, {}, options.passes, options.memory, store);
         begun.report.orientation = begun.signs.report;
         keep(true);
     }
     ScratchCloud next = cloud.without_normals_yet();
     SidedPass pass(begun.how, begun.signs, store, next);
+    const std::vector<VoxelRange> ranges = options.passes.plan(cloud, options.passes.ghost_voxels);
     for_parts(cloud, survey.sums, ranges, store.widths,
               [&](const CloudPart& part) { return pass.add(part); });
     NormalsReport report = begun.report;

@@ -1,6 +1,5 @@
 #include "hsdm/pipeline/cloud_survey.hh"
 
-#include "hsdm/normals/steady_normals.hh"
 #include "hsdm/pipeline/tile_plan.hh"
 
 #include <numeric>
@@ -36,19 +35,6 @@ void refuse_unfit_places(const CloudSurvey& survey, const ScratchCloud& cloud) {
         refuse_in_tiles("too few points, or all on a line");
     if (has_far_points(sums.places(), cloud.cube_extent(), survey.spacing))
         refuse_in_tiles("some points, or parts, are far from all others");
-}
-
-void refuse_unfit_normals(const CloudSurvey& survey) {
-    const Survey& sums = survey.sums;
-    if (are_scattered(sums.normals(), sums.points()))
-        refuse_in_tiles("normals are noisy, and may have to be told by the positions");
-    if (check_normals(sums.normals(), sums.points(), survey.spacing).doubtful())
-        refuse_in_tiles("normals contradict each other and must be turned to one side");
-}
-
-bool is_rough(const CloudSurvey& survey) {
-    const Survey& sums = survey.sums;
-    return check_normals(sums.normals(), sums.points(), survey.spacing).rough();
 }
 
 } // namespace hsdm

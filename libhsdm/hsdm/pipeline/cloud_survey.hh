@@ -18,10 +18,5 @@ CloudSurvey survey_cloud(ScratchCloud& cloud, std::size_t expected, std::size_t 
 
 /// Throws Error for a cloud of which PreparedCloud would move or drop points by what all of them are.
 void refuse_unfit_places(const CloudSurvey& survey, const ScratchCloud& cloud);
-/// The same where it would turn normals.
-void refuse_unfit_normals(const CloudSurvey& survey);
-
-/// Is the noise perhaps not small against the spacing?
-bool is_rough(const CloudSurvey& survey);
 
 } // namespace hsdm

@@ -4,8 +4,10 @@
 #include "hsdm/core/ranks.hh"
 #include "hsdm/core/system.hh"
 #include "hsdm/errors.hh"
+#include "hsdm/normals/steady_normals.hh"
 #include "hsdm/pipeline/choose_resolution.hh"
 #include "hsdm/pipeline/cloud_detail.hh"
+#include "hsdm/pipeline/cloud_given_normals.hh"
 #include "hsdm/pipeline/cloud_noise.hh"
 #include "hsdm/pipeline/cloud_normals.hh"
 #include "hsdm/pipeline/cloud_smoothing.hh"
@@ -227,7 +229,6 @@ private:
     void survey_points(std::size_t group) {
         survey_.emplace(survey_cloud(*cloud_, cloud_->extent().finite(), group));
         refuse_unfit_places(*survey_, *cloud_);
-        if (!estimates_) refuse_unfit_normals(*survey_);
         duplicates_ = cloud_->extent().finite() - survey_->sums.points();
     }
 
@@ -241,10 +242,10 @@ private:
     }
 
     void estimate_normals(std::size_t group) {
-        const auto left = tiles_.memory - std::min(tiles_.memory, bytes_of_program);
         const std::function<void(bool, const Ranks::Bytes&)> keep_begun =
             [&](bool sided, const Ranks::Bytes& begun) { keep(sided ? Pass::sided : Pass::cleaned, begun); };
-        const CloudNormalsOptions how{passes_of(group), left, passes_.is_kept() ? keep_begun : nullptr,
+        const CloudNormalsOptions how{passes_of(group), memory_left(),
+                                      passes_.is_kept() ? keep_begun : nullptr,
                                       std::exchange(normals_begun_, {})};
         const NormalsReport made = make_cloud_normals(*cloud_, *survey_, how, as_read_);
         known_.outliers = made.outliers;
@@ -257,7 +258,35 @@ private:
         report_.rejected["points_between_sheets"] = smoothed_.between.count;
     }
 
-    /// As prepared clouds have it, for voxels that are chosen.
+    /// As PreparedCloud has it. Returns the noise of positions. Of outliers that nothing else hangs on tiles
+    /// find out later.
+    double check_given_normals(std::size_t group) {
+        const auto consistency = [&] {
+            return check_normals(survey_->sums.normals(), survey_->sums.points(), survey_->spacing);
+        };
+        const auto noise_by = [&](const NormalConsistency& found) {
+            return found.rough() ? cloud_noise(*cloud_, *survey_, passes_of(group)).deviation : 0;
+        };
+        const bool scattered = are_scattered(survey_->sums.normals(), survey_->sums.points());
+        const bool trusted = !scattered && !consistency().doubtful();
+        double noise = trusted ? noise_by(consistency()) : 0;
+        if (!options_.depth || noise > 0 || !trusted)
+            known_.outliers =
+                drop_strays(*cloud_, *survey_, plan(group), tiles_.ghost_voxels, group).outliers;
+        if (trusted) return noise;
+        PartStore store(*cloud_, tiles_.ghost_voxels);
+        if (scattered)
+            report_.rejected["normals_steadied"] =
+                steady_cloud_normals(*cloud_, *survey_, passes_of(group), store);
+        noise = noise_by(consistency());
+        if (consistency().doubtful())
+            report_.rejected["normals_mended"] =
+                mend_cloud_normals(*cloud_, *survey_, passes_of(group), memory_left(), store);
+        return noise;
+    }
+    std::size_t memory_left() const { return tiles_.memory - std::min(tiles_.memory, bytes_of_program); }
+
+    /// As PreparedCloud has it, for voxels that are chosen.
     void smooth_for_voxels(double noise, std::size_t group) {
         if (noise <= relations::smooth_gap * cloud_->voxel_size()) return;
         PartStore store(*cloud_, tiles_.ghost_voxels);
@@ -273,11 +302,7 @@ private:
     /// Where no depth is given voxels follow from the points without outliers, which move to their cube.
     void choose_resolution(std::size_t group) {
         const int ghost = tiles_.ghost_voxels;
-        const bool may_be_rough = !estimates_ && is_rough(*survey_);
-        const double noise =
-            may_be_rough ? cloud_noise(*cloud_, *survey_, passes_of(group)).deviation : smoothed_.noise;
-        if (!estimates_ && (!options_.depth || noise > 0))
-            known_.outliers = drop_strays(*cloud_, *survey_, plan(group), ghost, group).outliers;
+        const double noise = estimates_ ? smoothed_.noise : check_given_normals(group);
         report_.input.spacing = survey_->spacing;
         const auto rearrange = [&](const VoxelCube& cube) {
             cloud_->rearrange(cloud_->bounds(), cube.extent, cube.depth, group);
@@ -306,7 +331,8 @@ private:
         note_cloud(*cloud_, *survey_, duplicates_, known_, report_);
         note_dropped("noisy points between sheets", smoothed_.between, cloud_->frame(), report_);
         if (smoothed_.noise > 0) report_.rejected["points_moved"] = survey_->sums.points();
-        if (!estimates_) report_.rejected["normals_mended"] = 0;
+        if (!estimates_)
+            for (const char* name : {"normals_steadied", "normals_mended"}) report_.rejected[name];
     }
 
     void make_facets(std::size_t group, bool turned) {
