@@ -17,6 +17,7 @@
 #include "hsdm/pipeline/make_tiles.hh"
 #include "hsdm/pipeline/options.hh"
 #include "hsdm/pipeline/part_store.hh"
+#include "hsdm/pipeline/sparse_areas.hh"
 #include "hsdm/pipeline/stray_search.hh"
 #include "hsdm/pipeline/tile_plan.hh"
 #include "hsdm/pipeline/whole_of_tiles.hh"
@@ -314,6 +315,18 @@ private:
                                 report_);
         if (!estimates_) smooth_for_voxels(noise, group);
         if (options_.depth && estimates_) survey_of_cube(group); // with normals
+        refuse_sparse(group);
+    }
+
+    /// Coarser voxels would help where the points are too few for those that follow from the spacing.
+    void refuse_sparse(std::size_t group) const {
+        if (options_.depth || options_.voxel_size) return;
+        SparseWindows windows(cloud_->depth());
+        cloud_->for_groups(group, [&](const Octree& part) { windows.add(part); });
+        windows.join(ranks_);
+        if (windows.levels_above() > 0)
+            refuse_in_tiles("points are far sparser in some places than in others, where coarser voxels help "
+                            "(--voxel-size has one size for all)");
     }
 
     /// The spacing stays that of the cube before.

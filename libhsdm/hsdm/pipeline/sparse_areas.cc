@@ -4,6 +4,7 @@
 #include "hsdm/core/chunks.hh"
 #include "hsdm/core/constants.hh"
 #include "hsdm/core/groups.hh"
+#include "hsdm/core/large_vector.hh"
 #include "hsdm/mesh/area_vector.hh"
 #include "hsdm/pipeline/constants.hh"
 
@@ -43,20 +44,40 @@ double mean_points(double points_per_occupied) {
 }
 
 /// Share of the surface that has fewer points to a level's voxels than `fewest`.
-double sparse_share(const OctreeLevel& level, double fewest) {
-    const OctreeLevel wide = coarser_level(level, level.depth - std::min(level.depth, uneven::window_levels));
+double sparse_share(std::span<const SparseWindow> windows, double fewest) {
     double sparse = 0, all = 0;
-    Index voxel = 0;
-    for (std::size_t w = 0; w < wide.size(); ++w) {
-        const Index begin = voxel, end_point = wide.first_point[w + 1];
-        while (voxel < level.size() && level.first_point[voxel] < end_point) ++voxel;
-        const auto points = static_cast<double>(end_point - wide.first_point[w]);
+    for (const SparseWindow& window : windows) {
+        const auto points = static_cast<double>(window.points);
         if (points < uneven::fewest_of_window) continue;
-        const double mean = mean_points(points / static_cast<double>(voxel - begin));
+        const double mean = mean_points(points / static_cast<double>(window.voxels));
         all += points / mean;
         if (mean < fewest) sparse += points / mean;
     }
     return all > 0 ? sparse / all : 0;
+}
+
+/// windows_of(above): of the level so many above the finest.
+template <class WindowsOf>
+int levels_above_sparse(int depth, const WindowsOf& windows_of) {
+    if (sparse_share(windows_of(0), uneven::points_per_voxel) <= uneven::most_sparse) return 0;
+    int above = 1;
+    while (above < std::min(uneven::most_levels, depth - 1)
+           && sparse_share(windows_of(above), uneven::points_of_coarsest) > uneven::most_sparse)
+        ++above;
+    return above;
+}
+
+std::vector<SparseWindow> windows_of(const OctreeLevel& level) {
+    const OctreeLevel wide = coarser_level(level, level.depth - std::min(level.depth, uneven::window_levels));
+    std::vector<SparseWindow> windows = large_vector<SparseWindow>(wide.size());
+    Index voxel = 0;
+    for (Index w = 0; w < wide.size(); ++w) {
+        const Index begin = voxel, end_point = wide.first_point[w + 1];
+        while (voxel < level.size() && level.first_point[voxel] < end_point) ++voxel;
+        windows[w] = {wide.codes[w], level.codes[begin], level.codes[voxel - 1], voxel - begin,
+                      end_point - wide.first_point[w]};
+    }
+    return windows;
 }
 
 /// Per corner of the facets, the normal of the surface there on the facet's side of creases.
@@ -116,13 +137,46 @@ void for_places(const PolygonMesh& mesh, std::size_t f, const std::vector<Vec3>&
 } // namespace
 
 int levels_above_sparse(const OctreeLevel& level) {
-    if (sparse_share(level, uneven::points_per_voxel) <= uneven::most_sparse) return 0;
-    int above = 1;
-    while (above < std::min(uneven::most_levels, level.depth - 1)
-           && sparse_share(coarser_level(level, level.depth - above), uneven::points_of_coarsest)
-                  > uneven::most_sparse)
-        ++above;
-    return above;
+    return levels_above_sparse(level.depth, [&](int above) {
+        return windows_of(above == 0 ? level : coarser_level(level, level.depth - above));
+    });
+}
+
+SparseWindows::SparseWindows(int depth)
+    : depth_(depth), of_level_(static_cast<std::size_t>(std::min(uneven::most_levels, depth)) + 1) {}
+
+void SparseWindows::add(const Octree& part) {
+    if (part.size() == 0) return;
+    for (std::size_t above = 0; above < of_level_.size(); ++above)
+        append(windows_of(extract_level(part, depth_ - static_cast<int>(above))), of_level_[above]);
+}
+
+/// The last window so far may go on, and its last voxel.
+void SparseWindows::append(std::vector<SparseWindow> next, std::vector<SparseWindow>& all) {
+    if (!all.empty() && !next.empty() && all.back().code == next.front().code) {
+        const SparseWindow last = all.back();
+        all.pop_back();
+        SparseWindow& both = next.front();
+        both.voxels += last.voxels - (last.last_voxel == both.first_voxel ? 1 : 0);
+        both.points += last.points;
+        both.first_voxel = last.first_voxel;
+    }
+    append_large(all, next);
+}
+
+void SparseWindows::join(Ranks& ranks) {
+    if (ranks.size() == 1) return;
+    for (std::vector<SparseWindow>& windows : of_level_) {
+        std::vector<SparseWindow> all;
+        for (const Ranks::Bytes& got : ranks.gather(bytes_of(windows)))
+            append(ByteReader(got).take_rest<SparseWindow>(), all);
+        windows = std::move(all);
+    }
+}
+
+int SparseWindows::levels_above() const {
+    return levels_above_sparse(
+        depth_, [&](int above) -> const auto& { return of_level_[static_cast<std::size_t>(above)]; });
 }
 
 SparseAreas::SparseAreas(const Octree& octree, const OctreeLevel& level, int coarser_levels)

@@ -2,6 +2,7 @@
 // Where a cloud has too few points for the voxels of a level, and points between them on coarser facets.
 
 #include "hsdm/completion/complete_surface.hh"
+#include "hsdm/core/ranks.hh"
 #include "hsdm/octree/octree.hh"
 
 namespace hsdm {
@@ -9,6 +10,28 @@ namespace hsdm {
 /// How many levels coarser than this one voxels are such that hardly any of the surface is too sparsely
 /// sampled for them; 0 where that holds for this level, at most uneven::most_levels. O(voxels), parallel.
 int levels_above_sparse(const OctreeLevel& level);
+
+/// Some voxels of a level within one of a coarser level, and their points.
+struct SparseWindow {
+    MortonCode code = 0, first_voxel = 0, last_voxel = 0;
+    std::size_t voxels = 0, points = 0;
+};
+
+/// The same of a cloud that is not in memory, on the level of this depth: takes parts of it in Morton order.
+class SparseWindows {
+public:
+    explicit SparseWindows(int depth);
+    void add(const Octree& part);
+    /// Becomes that of all ranks, whose parts come one rank's after the other's. For all at the same time.
+    void join(Ranks& ranks);
+    int levels_above() const;
+
+private:
+    static void append(std::vector<SparseWindow> next, std::vector<SparseWindow>& all);
+
+    int depth_;
+    std::vector<std::vector<SparseWindow>> of_level_; ///< by how many levels above
+};
 
 /// The measured points of a cloud that has normals, on a level and some coarser ones.
 class SparseAreas {
