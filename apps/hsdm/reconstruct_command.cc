@@ -68,9 +68,10 @@ auto named(const CloudFiles& cloud, const Make& make) {
     }
 }
 
-/// Returns make(). If it throws, tells what stays of the job; nothing does of a cloud that tiles cannot do.
+/// Returns make(). If it throws, tells what stays of the job; nothing does of a cloud that tiles cannot do,
+/// but that a run of several ranks may be of use to fewer, unless they give it up.
 template <class Make>
-auto with_kept_told(std::optional<KeptScratch>& kept, const Ranks& ranks, const Make& make) {
+auto with_kept_told(std::optional<KeptScratch>& kept, const Ranks& ranks, bool gives_up, const Make& make) {
     const auto tell = [&] {
         if (kept && ranks.is_first())
             complain("what is done stays in " + kept->folder()
@@ -80,10 +81,13 @@ auto with_kept_told(std::optional<KeptScratch>& kept, const Ranks& ranks, const 
     try {
         return make();
     } catch (const RefusedInTiles&) {
-        if (kept && ranks.size() == 1)
+        if (kept && (ranks.size() == 1 || gives_up))
             kept->remove();
         else
             tell();
+        throw;
+    } catch (const OtherRankGaveUp&) {
+        if (kept) kept->remove();
         throw;
     } catch (...) {
         tell();
@@ -220,8 +224,11 @@ private:
         if (tiles_) {
             PointsInParts points(cloud.files, arguments_.read);
             const bool goes_on = arguments_.resume && KeptScratch::is_there(arguments_.scratch, 0);
-            if (ranks_ || goes_on || !fits_in_one_piece(points.size()))
-                return make_in_tiles(points, cloud, start, bar);
+            if (ranks_ || goes_on || !fits_in_one_piece(points.size())) {
+                std::optional<std::vector<Report>> made = try_in_tiles(points, cloud, start, bar);
+                if (made) return std::move(*made);
+                if (!ranks_->is_first()) return {};
+            }
             if (points.in_memory()) read = std::move(points).file();
         }
         PointFile file = read ? std::move(*read) : read_joined(cloud.files, arguments_.read);
@@ -255,6 +262,10 @@ private:
     }
 
     void note_input(const CloudFiles& cloud, Report& report) const {
+        if (!refused_in_tiles_.empty()) {
+            report.options["ranks"] = std::to_string(ranks_->size());
+            report.options["tiles"] = "none, by the first rank alone: " + refused_in_tiles_;
+        }
         report.input.file = cloud.input;
         if (arguments_.join) report.input.files = cloud.files;
     }
@@ -283,6 +294,30 @@ private:
                             + " MB once they are read; of binary PLY files they need not be in memory");
         tiles.memory -= held;
         return tiles;
+    }
+
+    /// The same in bounded memory, or nothing where several ranks find that it has to be done in one piece,
+    /// which memory allows: by the first of them.
+    std::optional<std::vector<Report>> try_in_tiles(const PointsInParts& points, const CloudFiles& cloud,
+                                                    Clock::time_point start, ProgressBar& bar) {
+        if (!may_be_one_piece(points)) return make_in_tiles(points, cloud, start, bar);
+        try {
+            return make_in_tiles(points, cloud, start, bar);
+        } catch (const RefusedInTiles& refusal) {
+            ranks_->give_up(refusal.what());
+            note_refusal(cloud, refusal.what());
+        } catch (const OtherRankGaveUp& refusal) {
+            note_refusal(cloud, refusal.what());
+        }
+        return std::nullopt;
+    }
+    bool may_be_one_piece(const PointsInParts& points) const {
+        return ranks_ && (tiles_->memory == TileOptions::no_bound || fits_in_one_piece(points.size()));
+    }
+    /// But for the cloud's name and what could be done instead.
+    void note_refusal(const CloudFiles& cloud, const std::string& what) {
+        const std::size_t begin = what.starts_with(cloud.name() + ": ") ? cloud.name().size() + 2 : 0;
+        refused_in_tiles_ = what.substr(begin, what.find("; ") - begin);
     }
 
     /// The same in bounded memory. Reading is part of the other phases.
@@ -351,7 +386,7 @@ private:
                 }
             }
         };
-        with_kept_told(kept, ranks, make);
+        with_kept_told(kept, ranks, may_be_one_piece(points), make);
         if (kept) {
             ranks.any(false); // the mesh is written
             kept->remove();
@@ -470,7 +505,10 @@ private:
             text_ << line_of(report, written);
         }
         if (report.written) text_ << written_words(*report.written);
-        if (ranks_) text_ << work_words(report.ranks, arguments_.verbose);
+        if (!refused_in_tiles_.empty())
+            text_ << "ranks     the first one alone, in one piece: " << refused_in_tiles_ << '\n';
+        else if (ranks_)
+            text_ << work_words(report.ranks, arguments_.verbose);
         if (arguments_.verbose) text_ << details_of(report);
         text_ << warnings_of(report);
     }
@@ -495,6 +533,7 @@ private:
     std::optional<std::pair<int, int>> levels_;
     std::vector<StageCall> stages_;
     std::optional<TileOptions> tiles_;
+    std::string refused_in_tiles_; // why; empty: it was not, or memory does not allow one piece
     ReconstructOptions options_;
     OutputPlan plan_;
     std::ostream& text_;

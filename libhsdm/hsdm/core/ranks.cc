@@ -48,16 +48,23 @@ void Ranks::leave() noexcept {
 void Ranks::fail(const std::string& why) noexcept {
     if (failed_) return; // all know that one has, and none comes to another gather
     try {
-        gather_with(true, Bytes(why.begin(), why.end()));
+        gather_with(State::failed, Bytes(why.begin(), why.end()));
     } catch (const OtherRankFailed&) { // what is told is why this one has
     } catch (...) {
         abort(why);
     }
 }
 
-/// Every gather tells of failures before what it is for.
-std::vector<Ranks::Bytes> Ranks::gather_with(bool failed, const Bytes& own) {
-    Bytes sent(own.size() + 1, failed ? '\1' : '\0');
+void Ranks::give_up(const std::string& why) {
+    try {
+        gather_with(State::gave_up, Bytes(why.begin(), why.end()));
+    } catch (const OtherRankGaveUp&) { // all know, this one too
+    }
+}
+
+/// Every gather tells of failures before what it is for, and of these before what is only given up.
+std::vector<Ranks::Bytes> Ranks::gather_with(State state, const Bytes& own) {
+    Bytes sent(own.size() + 1, static_cast<char>(state));
     std::ranges::copy(own, sent.begin() + 1);
     bytes_sent_ += own.size() * static_cast<std::size_t>(size() - 1);
     std::vector<Bytes> got;
@@ -65,13 +72,15 @@ std::vector<Ranks::Bytes> Ranks::gather_with(bool failed, const Bytes& own) {
         const Stopwatch watch(seconds_waited_);
         got = gather_bytes(sent);
     }
-    const auto has_failed = [](const Bytes& bytes) { return bytes.front() == '\1'; };
-    const auto first = std::ranges::find_if(got, has_failed);
-    if (first != got.end()) {
-        failed_ = true;
+    for (const State other : {State::failed, State::gave_up}) {
+        const auto is = [&](const Bytes& bytes) { return bytes.front() == static_cast<char>(other); };
+        const auto first = std::ranges::find_if(got, is);
+        if (first == got.end()) continue;
         std::string why(first->begin() + 1, first->end());
-        if (!std::ranges::all_of(got, has_failed))
+        if (!std::ranges::all_of(got, is))
             why += " (rank " + std::to_string(first - got.begin()) + " of " + std::to_string(size()) + ")";
+        if (other == State::gave_up) throw OtherRankGaveUp(why);
+        failed_ = true;
         throw OtherRankFailed(why);
     }
     for (Bytes& bytes : got) bytes.erase(bytes.begin());
@@ -79,7 +88,7 @@ std::vector<Ranks::Bytes> Ranks::gather_with(bool failed, const Bytes& own) {
 }
 
 std::vector<Ranks::Bytes> Ranks::gather(const Bytes& own) {
-    return gather_with(false, own);
+    return gather_with(State::well, own);
 }
 
 std::vector<std::uint64_t> Ranks::gather(std::uint64_t own) {

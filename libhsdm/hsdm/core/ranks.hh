@@ -21,6 +21,12 @@ public:
     using Error::Error;
 };
 
+/// The same where that one only gave up what they were at, and all can do something else.
+class OtherRankGaveUp : public OtherRankFailed {
+public:
+    using OtherRankFailed::OtherRankFailed;
+};
+
 /// The ranks of one piece of work, this process being one. All call the same functions in the same order;
 /// each call waits for all. A rank that throws out of together() takes the others along: their next call
 /// throws OtherRankFailed, so that none waits for what does not come.
@@ -42,6 +48,11 @@ public:
     /// Tells the others, unless all know already that a rank has failed or have been through together(): to
     /// be called by one that ends, whatever it ends for.
     void leave() noexcept;
+
+    /// Tells the others that this rank gives up what all are at; those that did not call it too throw
+    /// OtherRankGaveUp from their next call. Whoever has thrown or called it is to go on with the same next
+    /// step as all others. Throws OtherRankFailed if one has failed meanwhile.
+    void give_up(const std::string& why);
 
     /// What every rank gives, by rank.
     std::vector<Bytes> gather(const Bytes& own);
@@ -71,7 +82,8 @@ private:
     /// Ends all ranks at once, where one cannot go on that others wait for.
     [[noreturn]] virtual void abort(const std::string& why) noexcept = 0;
 
-    std::vector<Bytes> gather_with(bool failed, const Bytes& own);
+    enum class State : char { well, failed, gave_up };
+    std::vector<Bytes> gather_with(State state, const Bytes& own);
     void fail(const std::string& why) noexcept;
 
     std::size_t bytes_sent_ = 0;
