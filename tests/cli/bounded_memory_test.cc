@@ -1,6 +1,7 @@
 // Reconstructing in bounded memory when things go wrong: nothing is lost, and nothing is left behind.
 #include "cli/run.hh"
 #include "support/sample.hh"
+#include "support/uneven.hh"
 
 #include <catch2/catch.hpp>
 
@@ -179,10 +180,9 @@ TEST_CASE("what is told of files that are not read again is told all the same", 
 TEST_CASE("a cloud that tiles refuse leaves nothing to go on with", "[cli][tiles]") {
     const Folder folder;
     std::filesystem::create_directory(folder / "scratch");
-    support::write_ply(
-        folder / "scan.ply",
-        support::sample(support::torus(1, 0.3), {.points = 20000, .normals = false, .position_noise = 0.02}));
-    const CommandResult result = run(folder, "reconstruct scan.ply --depth 6 --memory 70M --scratch scratch "
+    const PointCloud even = support::sample(support::torus(1, 0.3), {.points = 200000});
+    support::write_ply(folder / "scan.ply", support::thinned_on_one_side(even, Vec3(1, 0, 0), 0.3, 30));
+    const CommandResult result = run(folder, "reconstruct scan.ply --memory 70M --scratch scratch "
                                              "--resume -o part.ply");
     CHECK(result.status == 1);
     CHECK(result.err.find("this is not done in tiles") != std::string::npos);

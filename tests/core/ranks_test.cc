@@ -47,6 +47,30 @@ TEST_CASE("a rank that fails takes the others along, wherever they are", "[core]
     CHECK(failures[2] == expected);
 }
 
+TEST_CASE("what one rank gives up all go on from, and a failure is told all the same", "[core]") {
+    const int by = GENERATE(0, 1), and_by = GENERATE(1, 2);
+    const bool fails = GENERATE(false, true);
+    std::atomic<int> gave_up = 0, went_on = 0;
+    const auto failures = support::run_ranks(3, [&](Ranks& ranks) {
+        try {
+            ranks.sum(1);
+            if (ranks.rank() == by || ranks.rank() == and_by) throw Error("too wide");
+            ranks.sum(1);
+        } catch (const OtherRankGaveUp& error) {
+            CHECK(std::string(error.what()).starts_with("too wide"));
+            ++gave_up;
+        } catch (const Error& error) {
+            ranks.give_up(error.what());
+            ++gave_up;
+        }
+        if (fails && ranks.rank() == 2) throw Error("the disk is full");
+        went_on += static_cast<int>(ranks.sum(1));
+    });
+    CHECK(gave_up == 3);
+    CHECK(went_on == (fails ? 0 : 9));
+    for (const std::string& failure : failures) CHECK(failure.starts_with(fails ? "the disk is full" : ""));
+}
+
 TEST_CASE("a rank that fails after the last exchange is known to all", "[core]") {
     const auto failures = support::run_ranks(2, [](Ranks& ranks) {
         if (ranks.rank() == 0) throw Error("the mesh cannot be written");

@@ -69,6 +69,20 @@ for count in 1 2 3; do
     cmp one-of-all.ply ranks.ply || fail "$count processes write another mesh of several files"
 done
 
+# What tiles cannot do the first process does alone.
+printf 'ply\nformat binary_little_endian 1.0\nelement vertex 30000\n' >scalar.ply
+for name in x y z nx ny height; do printf 'property double %s\n' $name >>scalar.ply; done
+printf 'end_header\n' >>scalar.ply
+tail -c 1440000 scan.ply >>scalar.ply
+"$hsdm" reconstruct scalar.ply --depth 6 -o one-scalar.ply --quiet
+by 3 scalar.ply --depth 6 -o ranks.ply --scratch scratch --threads 1 --resume --report report.json ||
+    fail "3 processes, a scalar: status $?"
+cmp one-scalar.ply ranks.ply || fail "the first process alone writes another mesh"
+grep -q '"tiles": "none, by the first rank alone: the cloud has colours or scalars"' report.json &&
+    grep -q "^ranks     the first one alone, in one piece: the cloud has" out || fail "that it did is not told"
+[ -z "$(ls -A scratch)" ] || fail "scratch is left of what was given up"
+rm scalar.ply
+
 # Different arguments, and a standard stream that is closed, which MPI must not take for a connection of its own.
 status=0
 timeout 60 "$mpirun" -n 1 "$hsdm_mpi" reconstruct scan.ply --depth 6 -o ranks.ply : \

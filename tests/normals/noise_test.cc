@@ -59,7 +59,7 @@ TEST_CASE("samples of the points tell the deviation that all of them tell", "[no
         points.push_back(static_cast<Index>(i));
     const NeighborOptions options{.finest_level = finest_leaves(count_leaves(octree.codes))};
     const auto samples = noise_samples(octree, points, find_neighbors_of(octree, points, options));
-    const std::optional<double> told = noise_deviation(samples);
+    const std::optional<double> told = noise_deviation(samples, octree.size());
     CHECK(told.has_value() == (sigma < 1)); // beyond, a thinned cloud tells
     if (told) CHECK(*told == noise_deviation(octree, all));
     const auto of_six = noise_samples(octree, all);

@@ -130,11 +130,6 @@ TEST_CASE("what tiles cannot tell of a cloud without normals is refused", "[pipe
         return "";
     };
     PointCloud cloud = support::sample(support::sphere(1), {.points = 5000, .normals = false});
-    SECTION("noise") {
-        cloud =
-            support::sample(support::sphere(1), {.points = 5000, .normals = false, .position_noise = 0.04});
-        CHECK(refusal(cloud, tiles_with(3000)).find("nois") != std::string::npos);
-    }
     SECTION("scanners") {
         cloud.sensor = Vec3(0, 0, 5);
         CHECK(refusal(cloud, tiles_with(3000)).find("scanners") != std::string::npos);

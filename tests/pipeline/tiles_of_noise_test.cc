@@ -1,0 +1,155 @@
+// Clouds in tiles whose points are moved because of noise, or whose normals are mended.
+#include "hsdm/mesh/to_mesh.hh"
+#include "hsdm/normals/smooth_points.hh"
+#include "hsdm/octree/spacing.hh"
+#include "hsdm/pipeline/reconstruct_in_tiles.hh"
+#include "hsdm/pipeline/sparse_areas.hh"
+#include "support/check.hh"
+#include "support/random.hh"
+#include "support/rank_threads.hh"
+#include "support/sample.hh"
+#include "support/uneven.hh"
+
+#include <catch2/catch.hpp>
+
+#include <optional>
+
+using namespace hsdm;
+
+namespace {
+
+constexpr std::size_t noisy_points = 8000;
+
+/// A box with a bore, of six squared units.
+support::Solid bored_block() {
+    return support::in_general_pose(support::box({1.4, 1, 0.8}) - support::cylinder(0.2, 2));
+}
+
+/// Noise of so many spacings.
+PointCloud noisy_scan(const support::Solid& solid, double area, bool normals, double spacings) {
+    const double sigma = spacings * std::sqrt(area / noisy_points);
+    return support::sample(solid, {.points = noisy_points, .normals = normals, .position_noise = sigma});
+}
+
+TileOptions noisy_tiles() {
+    TileOptions tiles;
+    tiles.memory = std::size_t{1} << 30;
+    tiles.most_points = 4000;
+    return tiles;
+}
+
+void check_noisy_pieces(const Reconstruction& whole, const Reconstruction& tiles) {
+    const PolygonMesh a = to_polygons(whole.mesh), b = to_polygons(tiles.mesh);
+    CHECK(a.facet_count() > 100);
+    CHECK(support::are_same_bits(a.positions, b.positions));
+    CHECK(a.corners == b.corners);
+    CHECK(a.first == b.first);
+    CHECK(a.sharp_edges == b.sharp_edges);
+    const Report &one = whole.report, &other = tiles.report;
+    CHECK(one.input.spacing == other.input.spacing);
+    // Of points that have been moved: where they were read is rounded once more, and they come in another
+    // order.
+    const double rounding = one.rejected.contains("points_moved") ? 1e-13 : 0;
+    CHECK(one.error.points_to_mesh_max == Approx(other.error.points_to_mesh_max).epsilon(rounding));
+    CHECK(one.error.points_to_mesh_mean == Approx(other.error.points_to_mesh_mean).epsilon(rounding));
+    for (const auto& [name, count] : other.rejected)
+        if (name.starts_with("points") || name.starts_with("normals")) {
+            INFO(name);
+            CHECK(one.rejected.at(name) == count);
+        }
+    for (const Report::Dropped& dropped : other.dropped) {
+        const auto same = std::ranges::find(one.dropped, dropped.what, &Report::Dropped::what);
+        REQUIRE(same != one.dropped.end());
+        CHECK(same->count == dropped.count);
+        CHECK(same->where == dropped.where);
+    }
+}
+
+/// In tiles of one process and of three ranks.
+Reconstruction check_tiles_and_ranks(const PointCloud& cloud, const ReconstructOptions& options) {
+    Reconstruction whole = reconstruct(cloud, options);
+    TileReport how;
+    check_noisy_pieces(whole, reconstruct_in_tiles(view_of(cloud), options, noisy_tiles(), &how));
+    CHECK(how.tiles > 1);
+    std::optional<Reconstruction> result;
+    const auto failures = support::run_ranks(3, [&](Ranks& ranks) {
+        Reconstruction made =
+            reconstruct_in_tiles(support::share_of(cloud, ranks), options, noisy_tiles(), ranks);
+        if (ranks.is_first()) result.emplace(std::move(made));
+    });
+    for (const std::string& failure : failures) CHECK(failure == "");
+    REQUIRE(result);
+    check_noisy_pieces(whole, *result);
+    return whole;
+}
+
+} // namespace
+
+TEST_CASE("noisy points are moved in tiles as in one piece", "[pipeline][slow]") {
+    const bool normals = GENERATE(false, true), chosen = GENERATE(false, true);
+    const double spacings = GENERATE(0.5, 1.2); // which takes a thinned cloud to tell
+    INFO(spacings << " spacings of noise" << (normals ? ", normals" : "") << (chosen ? ", any depth" : ""));
+    ReconstructOptions options{.threads = 2};
+    if (!chosen) options.depth = 5;
+    const Reconstruction whole =
+        check_tiles_and_ranks(noisy_scan(bored_block(), 6, normals, spacings), options);
+    // Beside such voxels less noise is small, unless normals are to be told from it.
+    CHECK(whole.report.rejected.contains("points_moved") == (!normals || spacings > 1));
+}
+
+TEST_CASE("so are those of a wall as thin as the noise is wide", "[pipeline][slow]") {
+    const double sigma = 1.1 * std::sqrt(2.0 / noisy_points);
+    const support::Solid plate = support::in_general_pose(support::box({1, 1, 4 * sigma}));
+    const PointCloud cloud = noisy_scan(plate, 2, false, 1.1);
+    Octree octree = build_octree(cloud);
+    CHECK(smooth_points(octree, 2 * sigma) < 1.2 * sigma); // to two sheets
+    check_tiles_and_ranks(cloud, {.depth = 4, .threads = 2});
+}
+
+TEST_CASE("normals that scatter or contradict each other are mended in tiles as in one piece",
+          "[pipeline][slow]") {
+    const bool chosen = GENERATE(false, true), scatter = GENERATE(false, true), turn = GENERATE(false, true);
+    const double position_noise = GENERATE(0.0, 0.01);
+    if (!scatter && !turn) return;
+    PointCloud cloud = support::sample(
+        bored_block(),
+        {.points = noisy_points, .position_noise = position_noise, .normal_noise = scatter ? 0.35 : 0.0});
+    support::Random random(3);
+    for (Vec3& n : cloud.normals)
+        if (turn && random.uniform() < 0.2) n = -n;
+    ReconstructOptions options{.holes = Holes::keep, .threads = 2};
+    if (!chosen) options.depth = 4;
+    const Reconstruction whole = check_tiles_and_ranks(cloud, options);
+    CHECK((whole.report.rejected.at("normals_steadied") > 0) == scatter);
+    CHECK((whole.report.rejected.at("normals_mended") > 0) == turn);
+}
+
+TEST_CASE("where coarser voxels would help tiles say so, and one size is done", "[pipeline]") {
+    const PointCloud cloud = support::thinned_on_one_side(
+        support::sample(support::sphere(1), {.points = 20000}), Vec3(1, 0, 0), 0.3, 30);
+    CHECK_THROWS_AS(reconstruct_in_tiles(view_of(cloud), {}, noisy_tiles()), RefusedInTiles);
+    ReconstructOptions options{.holes = Holes::keep};
+    options.voxel_size = 0.1;
+    check_noisy_pieces(reconstruct(cloud, options),
+                       reconstruct_in_tiles(view_of(cloud), options, noisy_tiles()));
+}
+
+TEST_CASE("parts of a cloud tell where coarser voxels help as the whole does", "[pipeline]") {
+    const PointCloud cloud = support::thinned_on_one_side(
+        support::sample(support::sphere(1), {.points = 20000}), Vec3(1, 0, 0), 0.3, 30);
+    const Octree whole = build_octree(cloud);
+    for (const int depth : {2, 4, 5, 6, 7}) {
+        const int expected = levels_above_sparse(extract_level(whole, depth));
+        for (const std::size_t size : {37u, 1000u}) {
+            SparseWindows windows(depth);
+            std::vector<std::uint8_t> others(whole.size());
+            for (std::size_t begin = 0; begin < whole.size(); begin += size) {
+                Octree part = whole;
+                for (std::size_t i = 0; i < whole.size(); ++i) others[i] = i < begin || i >= begin + size;
+                remove_points(part, others);
+                windows.add(part);
+            }
+            CHECK(windows.levels_above() == expected);
+        }
+    }
+}
