@@ -304,12 +304,17 @@ private:
         try {
             return make_in_tiles(points, cloud, start, bar);
         } catch (const RefusedInTiles& refusal) {
-            ranks_->give_up(refusal.what());
-            note_refusal(cloud, refusal.what());
+            give_up(refusal.what(), cloud);
+        } catch (const OptionError& refusal) { // by all ranks; one piece tells what is wrong in itself
+            give_up(refusal.what(), cloud);
         } catch (const OtherRankGaveUp& refusal) {
             note_refusal(cloud, refusal.what());
         }
         return std::nullopt;
+    }
+    void give_up(const std::string& why, const CloudFiles& cloud) {
+        ranks_->give_up(why);
+        note_refusal(cloud, why);
     }
     bool may_be_one_piece(const PointsInParts& points) const {
         return ranks_ && (tiles_->memory == TileOptions::no_bound || fits_in_one_piece(points.size()));
@@ -318,6 +323,8 @@ private:
     void note_refusal(const CloudFiles& cloud, const std::string& what) {
         const std::size_t begin = what.starts_with(cloud.name() + ": ") ? cloud.name().size() + 2 : 0;
         refused_in_tiles_ = what.substr(begin, what.find("; ") - begin);
+        if (const std::string of_option = "memory: "; refused_in_tiles_.starts_with(of_option))
+            refused_in_tiles_.replace(0, of_option.size(), "it ");
     }
 
     /// The same in bounded memory. Reading is part of the other phases.

@@ -82,6 +82,10 @@ grep -q '"tiles": "none, by the first rank alone: the cloud has colours or scala
     grep -q "^ranks     the first one alone, in one piece: the cloud has" out || fail "that it did is not told"
 [ -z "$(ls -A scratch)" ] || fail "scratch is left of what was given up"
 rm scalar.ply
+"$hsdm" reconstruct scan.ply --max-error 1% -o one-adaptive.ply --quiet
+by 3 scan.ply --max-error 1% -o ranks.ply --scratch scratch --threads 1 || fail "3 processes, --max-error: status $?"
+cmp one-adaptive.ply ranks.ply || fail "the first process alone writes another adaptive mesh"
+grep -q "^ranks     the first one alone, in one piece: it cannot come with --max-error yet" out || fail "that it did is not told"
 
 # Different arguments, and a standard stream that is closed, which MPI must not take for a connection of its own.
 status=0
