@@ -1,4 +1,5 @@
 // Clouds in tiles whose points are moved because of noise, or whose normals are mended.
+#include "hsdm/mesh/area_vector.hh"
 #include "hsdm/mesh/to_mesh.hh"
 #include "hsdm/normals/smooth_points.hh"
 #include "hsdm/octree/spacing.hh"
@@ -122,6 +123,36 @@ TEST_CASE("normals that scatter or contradict each other are mended in tiles as 
     const Reconstruction whole = check_tiles_and_ranks(cloud, options);
     CHECK((whole.report.rejected.at("normals_steadied") > 0) == scatter);
     CHECK((whole.report.rejected.at("normals_mended") > 0) == turn);
+}
+
+TEST_CASE("normals face the scanner in tiles as in one piece", "[pipeline][slow]") {
+    PointCloud cloud;
+    support::Random random(5);
+    for (std::size_t i = 0; i < noisy_points; ++i) {
+        const double x = random.uniform(-1, 1), y = random.uniform(-1, 1);
+        cloud.positions.emplace_back(x, y, 0.3 * x * x - 0.2 * y * y); // either side may be out
+    }
+    const double side = GENERATE(-5.0, 5.0);
+    const Vec3 scanner(0.3, 0.2, side);
+    const bool sure = GENERATE(false, true), given = GENERATE(false, true);
+    if (sure)
+        cloud.sensors = {scanner};
+    else
+        cloud.sensor = scanner;
+    if (given)
+        for (const Vec3& p : cloud.positions)
+            cloud.normals.push_back(Vec3(-0.6 * p[0], 0.4 * p[1], 1).normalized()
+                                    * (random.uniform() < 0.5 ? -1 : 1));
+    else
+        cloud.positions.emplace_back(0.1, 0.2, 1.5); // an outlier, without which the cube is another one
+    const Reconstruction whole = check_tiles_and_ranks(cloud, {.depth = 4, .threads = 2});
+    if (!given || sure) {
+        const PolygonMesh mesh = to_polygons(whole.mesh);
+        std::size_t facing = 0;
+        for (std::size_t f = 0; f < mesh.facet_count(); ++f)
+            facing += area_vector(mesh, mesh.facet(f))[2] * side > 0;
+        CHECK(facing > mesh.facet_count() * 9 / 10);
+    }
 }
 
 TEST_CASE("where coarser voxels would help tiles say so, and one size is done", "[pipeline]") {

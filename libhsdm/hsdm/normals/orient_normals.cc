@@ -37,22 +37,6 @@ std::vector<std::int8_t> free_signs(const Patches& patches, const Signs& signs,
     return sign;
 }
 
-/// Per patch, how many of its points have their scanner in front of it, less those that have it behind.
-std::vector<float> seen_by_sensors(const Octree& octree, const Patches& patches,
-                                   const Viewpoints& viewpoints) {
-    constexpr double grazing = 0.1; // a cosine: at such angles noise of the normal decides
-    std::vector<float> votes = large_vector<float>(viewpoints.sensors.empty() ? 0 : patches.size(), 0);
-    for_each_in_order(votes.empty() ? 0 : octree.size(), [&](std::size_t i) {
-        const Index p = patches.of_point[i];
-        const Vec3* sensor = p == no_index ? nullptr : viewpoints.of(octree.source[i]);
-        if (sensor == nullptr) return;
-        const Vec3 way = *sensor - octree.positions[i];
-        const double cosine = (patches.normals[p] | way) / way.norm();
-        if (std::abs(cosine) > grazing) votes[p] += cosine > 0 ? 1 : -1;
-    });
-    return votes;
-}
-
 /// Do most views of patches agree with the signs found? The wall of a shell thinner than the space's voxels
 /// is missed in places, from inside as often as from outside.
 bool views_agree(const Patches& patches, const OutsideView& view, const Signs& signs) {
@@ -109,6 +93,21 @@ const Vec3* Viewpoints::of(Index source) const {
     return number >= 0 && number < static_cast<double>(sensors.size())
                ? &sensors[static_cast<std::size_t>(number)]
                : nullptr;
+}
+
+std::vector<float> seen_by_sensors(const Octree& octree, const Patches& patches,
+                                   const Viewpoints& viewpoints) {
+    constexpr double grazing = 0.1; // a cosine: at such angles noise of the normal decides
+    std::vector<float> votes = large_vector<float>(viewpoints.sensors.empty() ? 0 : patches.size(), 0);
+    for_each_in_order(votes.empty() ? 0 : octree.size(), [&](std::size_t i) {
+        const Index p = patches.of_point[i];
+        const Vec3* sensor = p == no_index ? nullptr : viewpoints.of(octree.source[i]);
+        if (sensor == nullptr) return;
+        const Vec3 way = *sensor - octree.positions[i];
+        const double cosine = (patches.normals[p] | way) / way.norm();
+        if (std::abs(cosine) > grazing) votes[p] += cosine > 0 ? 1 : -1;
+    });
+    return votes;
 }
 
 PatchSigns sign_patches(const Patches& patches, std::vector<SignedEdge> edges, const OutsideView& view,

@@ -54,6 +54,11 @@ Orientation orient_normals(
     const Octree& octree, const Neighbors& neighbors, const EstimatedNormals& estimate,
     const OrientOptions& options = {}, const std::function<void()>& meanwhile = [] {});
 
+/// Per patch, how many of its points have their scanner in front of it, less those that have it behind; empty
+/// if none is known.
+std::vector<float> seen_by_sensors(const Octree& octree, const Patches& patches,
+                                   const Viewpoints& viewpoints);
+
 /// The last step of that, of all patches of a cloud: by the evidence between them, by what they see of the
 /// outside, and by the scanners (per patch, as in Viewpoints; none: empty). evidence_of_layers() is asked
 /// where the evidence contradicts itself; the signs in what it gives are found here. Of `patches` nothing

@@ -23,6 +23,19 @@ void add_to_sample(const PointView& part, std::size_t before, CloudExtent& exten
     }
 }
 
+CloudScanners scanners_of(const PointView& part) {
+    CloudScanners scanners{part.sensor, {}, part.sensors.size() > 1 || part.sensor_of.count > 0};
+    if (!part.sensors.empty()) scanners.viewpoint = part.sensors.front();
+    return scanners;
+}
+
+/// Adds those of more points; `has_some`: of others, that came before.
+void join(const CloudScanners& next, bool has_some, CloudScanners& scanners) {
+    if (!has_some) scanners = next;
+    const bool are_same = scanners.sensor == next.sensor && scanners.viewpoint == next.viewpoint;
+    scanners.are_many = scanners.are_many || next.are_many || !are_same;
+}
+
 /// What this rank finds in its part.
 CloudExtent extent_of_part(const PointParts& parts) {
     CloudExtent extent;
@@ -32,7 +45,7 @@ CloudExtent extent_of_part(const PointParts& parts) {
         if (extent.points > 0 && extent.has_normals != part.has_normals())
             refuse_in_tiles("some parts of the cloud have normals and others have none");
         extent.has_normals = part.has_normals();
-        extent.has_scanners = extent.has_scanners || part.sensor || !part.sensors.empty();
+        join(scanners_of(part), extent.points > 0, extent.scanners);
         if (part.colors.count > 0 || !part.scalars.empty())
             refuse_in_tiles("the cloud has colours or scalars");
         const NonfiniteRows nonfinite = find_nonfinite(part.positions);
@@ -51,7 +64,7 @@ void join(const CloudExtent& next, CloudExtent& extent) {
     if (extent.points > 0 && next.points > 0 && extent.has_normals != next.has_normals)
         refuse_in_tiles("some parts of the cloud have normals and others have none");
     extent.has_normals = next.points > 0 ? next.has_normals : extent.has_normals;
-    extent.has_scanners = extent.has_scanners || next.has_scanners;
+    if (next.points > 0) join(next.scanners, extent.points > 0, extent.scanners);
     if (extent.nonfinite == 0) extent.first_nonfinite = extent.points + next.first_nonfinite;
     extent.nonfinite += next.nonfinite;
     extent.points += next.points;
@@ -59,6 +72,25 @@ void join(const CloudExtent& next, CloudExtent& extent) {
 }
 
 } // namespace
+
+CloudScanners CloudScanners::placed(const CloudFrame& frame, const Vec3& origin) const {
+    CloudScanners result = *this;
+    for (std::optional<Vec3>* const place : {&result.sensor, &result.viewpoint})
+        if (*place) **place = frame.to_work(**place) - origin;
+    return result;
+}
+
+void CloudScanners::move(const Vec3& by) {
+    for (std::optional<Vec3>* const place : {&sensor, &viewpoint})
+        if (*place) **place += by;
+}
+
+OrientOptions CloudScanners::orientation() const {
+    OrientOptions options;
+    options.sensor = sensor;
+    if (viewpoint) options.viewpoints.sensors.push_back(*viewpoint);
+    return options;
+}
 
 void refuse_in_tiles(const std::string& what) {
     throw RefusedInTiles(
@@ -91,7 +123,7 @@ void put_extent(const CloudExtent& extent, Ranks::Bytes& bytes) {
     for (const std::size_t count : {extent.points, extent.nonfinite, extent.first_nonfinite})
         put(count, bytes);
     put(extent.box, bytes);
-    for (const bool has : {extent.has_normals, extent.has_scanners}) put(has, bytes);
+    put(extent.has_normals, bytes), put(extent.scanners, bytes);
 }
 
 CloudExtent extent_from(ByteReader& bytes) {
@@ -99,7 +131,7 @@ CloudExtent extent_from(ByteReader& bytes) {
     for (std::size_t* count : {&extent.points, &extent.nonfinite, &extent.first_nonfinite})
         *count = bytes.take<std::size_t>();
     extent.box = bytes.take<Box>();
-    extent.has_normals = bytes.take<bool>(), extent.has_scanners = bytes.take<bool>();
+    extent.has_normals = bytes.take<bool>(), extent.scanners = bytes.take<CloudScanners>();
     return extent;
 }
 

@@ -111,14 +111,13 @@ std::size_t steady_cloud_normals(ScratchCloud& cloud, CloudSurvey& survey, const
     return cloud.ranks().sum(changed);
 }
 
-std::size_t mend_cloud_normals(ScratchCloud& cloud, CloudSurvey& survey, const CloudPasses& passes,
-                               std::size_t memory, PartStore& store) {
+std::size_t mend_cloud_normals(ScratchCloud& cloud, CloudSurvey& survey, OrientOptions options,
+                               const CloudPasses& passes, std::size_t memory, PartStore& store) {
     const NormalConsistency before = consistency_of(survey, cloud);
     Estimating how = estimating(cloud, survey, passes);
     const bool askew = before.askew();
     how.normals = askew ? Estimating::Normals::along_given : Estimating::Normals::given;
     if (!askew) how.estimate.rounds = 0;
-    OrientOptions options;
     options.signs_count = true;
     const SignsOfAll signs = find_signs(cloud, survey, how, options, passes, memory, store);
     std::uint64_t turned = 0;

@@ -64,6 +64,7 @@ private:
 /// What has been done before the normals are made.
 struct Begun {
     bool is_sided = false;
+    CloudScanners scanners{}; ///< relative to the cube as it is then
     NormalsReport report;
     Estimating how;
     SignsOfAll signs; ///< if it is
@@ -89,8 +90,11 @@ void clean(ScratchCloud& cloud, CloudSurvey& survey, const CloudPasses& passes, 
     std::vector<PointRow> out;
     report.outliers =
         leave_outliers_out(cloud, survey, passes.plan, passes.most_points, store, OutlierOptions(), out);
-    if (report.outliers.count > 0 && fit_to_points_left(cloud, passes.most_points))
+    if (const Vec3 before = cloud.origin();
+        report.outliers.count > 0 && fit_to_points_left(cloud, passes.most_points)) {
         survey = survey_cloud(cloud, survey.sums.points(), passes.most_points);
+        begun.scanners.move(before - cloud.origin());
+    }
     CloudNoise noise = cloud_noise(cloud, survey, passes);
     if (!(noise.deviation <= SmoothOptions().least_noise * survey.spacing)) {
         report.smoothed =
@@ -103,7 +107,7 @@ void clean(ScratchCloud& cloud, CloudSurvey& survey, const CloudPasses& passes, 
 
 Ranks::Bytes bytes_of_begun(const Begun& begun) {
     Ranks::Bytes bytes;
-    put(begun.is_sided, bytes), put(begun.report, bytes), put(begun.how, bytes);
+    put(begun.is_sided, bytes), put(begun.report, bytes), put(begun.how, bytes), put(begun.scanners, bytes);
     put_vector(begun.signs.number, bytes), put_vector(begun.signs.sign, bytes);
     put(begun.signs.report, bytes);
     return bytes;
@@ -113,7 +117,8 @@ Begun begun_from(const Ranks::Bytes& bytes) {
     ByteReader reader(bytes);
     Begun begun;
     begun.is_sided = reader.take<bool>();
-    begun.report = reader.take<NormalsReport>(), begun.how = reader.take<Estimating>();
+    begun.report = reader.take<NormalsReport>(), begun.how = reader.take<Estimating>(),
+    begun.scanners = reader.take<CloudScanners>();
     begun.signs.number = reader.take_vector<Index>(), begun.signs.sign = reader.take_vector<std::int8_t>();
     begun.signs.report = reader.take<OrientReport>();
     return begun;
@@ -130,11 +135,13 @@ NormalsReport make_cloud_normals(ScratchCloud& cloud, CloudSurvey& survey, const
     };
     PartStore store(cloud, options.passes.ghost_voxels);
     if (options.begun.empty()) {
+        begun.scanners = options.scanners;
         clean(cloud, survey, options.passes, store, as_read, begun);
         keep(false);
     }
     if (!begun.is_sided) {
-        begun.signs = find_signs(cloud, survey, begun.how, {}, options.passes, options.memory, store);
+        begun.signs = find_signs(cloud, survey, begun.how, begun.scanners.orientation(), options.passes,
+                                 options.memory, store);
         begun.report.orientation = begun.signs.report;
         keep(true);
     }

@@ -10,7 +10,8 @@ namespace hsdm {
 
 struct CloudNormalsOptions {
     CloudPasses passes{};
-    std::size_t memory = 0; ///< bytes that the patches of all may take
+    CloudScanners scanners{}; ///< relative to the cube
+    std::size_t memory = 0;   ///< bytes that the patches of all may take
     /// Where what is done can be kept: called with what `begun` of a later call has to be, of the cloud and
     /// the survey as they are then; `sided`: else outliers are left out, and nothing more.
     std::function<void(bool sided, const Ranks::Bytes&)> keep{};

@@ -15,6 +15,7 @@ namespace {
 struct PatchRow {
     Index number, count;
     std::int32_t sides;
+    float seen_by;
     Vec3 centroid, normal;
     Sights sights;
     std::uint8_t beside; ///< as sheets_beside(), if sheets may be layers
@@ -54,9 +55,10 @@ EmptySpace space_of(const ScratchCloud& cloud, double spacing, std::size_t most)
 class EvidencePass {
 public:
     /// `memory`: bytes that what is found may take, else it throws Error.
-    EvidencePass(const Estimating& how, const EmptySpace& space, double spacing, bool may_be_layers,
-                 std::size_t memory, PartStore& store)
+    EvidencePass(const Estimating& how, const Viewpoints& viewpoints, const EmptySpace& space, double spacing,
+                 bool may_be_layers, std::size_t memory, PartStore& store)
         : how_(how),
+          viewpoints_(viewpoints),
           space_(space),
           spacing_(spacing),
           may_be_layers_(may_be_layers),
@@ -95,8 +97,9 @@ public:
             take(made, layer_evidence(part.octree(), made.neighbors, made.estimate, made.patches, begin, end),
                  evidence.layers);
         }
+        const std::vector<float> by_sensors = seen_by_sensors(part.octree(), made.patches, viewpoints_);
         for (Index p = first_patch; p < last_patch; ++p)
-            take_patch(made, p, seen[p - first_patch], beside[p]);
+            take_patch(made, p, seen[p - first_patch], beside[p], by_sensors.empty() ? 0 : by_sensors[p]);
         take(made, patch_evidence(part.octree(), made.neighbors, made.estimate, made.patches, begin, end),
              evidence.edges);
         refuse_large(evidence.patches.size(), evidence.edges.size() + evidence.layers.size(), memory_,
@@ -127,11 +130,11 @@ private:
         return true;
     }
 
-    void take_patch(const PartNormals& made, Index p, Sights sights, std::uint8_t beside) {
+    void take_patch(const PartNormals& made, Index p, Sights sights, std::uint8_t beside, float seen_by) {
         for (Sight& sight : sights)
             if (sight.patch != no_index) sight.patch = made.number(sight.patch);
         push_large(evidence.patches,
-                   PatchRow{made.number(p), made.patches.counts[p], made.patches.sides[p],
+                   PatchRow{made.number(p), made.patches.counts[p], made.patches.sides[p], seen_by,
                             made.patches.centroids[p], made.patches.normals[p], sights, beside});
     }
     static void take(const PartNormals& made, std::vector<SignedEdge> found, std::vector<SignedEdge>& all) {
@@ -140,6 +143,7 @@ private:
     }
 
     const Estimating& how_;
+    const Viewpoints& viewpoints_;
     const EmptySpace& space_;
     double spacing_;
     bool may_be_layers_;
@@ -172,11 +176,12 @@ struct WholeEvidence {
     Patches patches; ///< without what is of points
     std::vector<Sights> seen;
     std::vector<std::uint8_t> beside;
+    std::vector<float> seen_by; ///< as seen_by_sensors()
 };
 
 /// The evidence of all patches as make_normals() has it: in the order of their numbers, which become their
 /// places in it. Leaves `all` without what is of patches.
-WholeEvidence whole_evidence(SideEvidence& all, SignsOfAll& result) {
+WholeEvidence whole_evidence(SideEvidence& all, bool is_seen, SignsOfAll& result) {
     std::ranges::sort(all.patches, {}, &PatchRow::number);
     WholeEvidence whole;
     for (const PatchRow& row : all.patches) {
@@ -187,6 +192,7 @@ WholeEvidence whole_evidence(SideEvidence& all, SignsOfAll& result) {
         push_large(whole.patches.normals, row.normal);
         push_large(whole.seen, row.sights);
         push_large(whole.beside, row.beside);
+        if (is_seen) push_large(whole.seen_by, row.seen_by);
     }
     release(all.patches);
     for (Sights& sights : whole.seen)
@@ -201,11 +207,11 @@ WholeEvidence whole_evidence(SideEvidence& all, SignsOfAll& result) {
 std::optional<SignsOfAll> signs_of(SideEvidence&& all, const EmptySpace& space, bool may_be_layers,
                                    const OrientOptions& options) {
     SignsOfAll result;
-    const WholeEvidence whole = whole_evidence(all, result);
+    const WholeEvidence whole = whole_evidence(all, !options.viewpoints.sensors.empty(), result);
     bool lacks_layers = false;
     PatchSigns signs = sign_patches(
-        whole.patches, std::move(all.edges), judge_sights(space, whole.seen, whole.patches), {}, options,
-        [&]() -> LayerReading {
+        whole.patches, std::move(all.edges), judge_sights(space, whole.seen, whole.patches), whole.seen_by,
+        options, [&]() -> LayerReading {
             lacks_layers = !may_be_layers;
             std::vector<std::int8_t> sky(whole.patches.size(), 0);
             if (may_be_layers) sky = judge_sights(space, whole.seen, whole.patches, whole.beside).sky;
@@ -277,7 +283,7 @@ SignsOfAll find_signs(ScratchCloud& cloud, const CloudSurvey& survey, const Esti
     const EmptySpace space = space_of(cloud, spacing, passes.most_points);
     const std::vector<VoxelRange> ranges = passes.plan(cloud, passes.ghost_voxels);
     for (bool may_be_layers = false;; may_be_layers = true) {
-        EvidencePass pass(how, space, spacing, may_be_layers, memory, store);
+        EvidencePass pass(how, options.viewpoints, space, spacing, may_be_layers, memory, store);
         for_parts(cloud, survey.sums, ranges, store.widths,
                   [&](const CloudPart& part) { return pass.add(part); });
         if (auto signs =

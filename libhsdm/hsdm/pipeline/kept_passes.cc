@@ -67,8 +67,8 @@ std::string form_of_kept() {
     for (const std::size_t size :
          {sizeof(Index), sizeof(PointRow), sizeof(Box), sizeof(ScratchPoints::Cell), sizeof(Occurrences),
           sizeof(SetSizes), sizeof(NeighborOptions), sizeof(EstimateOptions), sizeof(NormalsReport),
-          sizeof(OrientReport), sizeof(VoxelRange), sizeof(FacetCounts), sizeof(Piece::Digest), sizeof(Piece),
-          sizeof(Survey), sizeof(PartComponents::Shared)})
+          sizeof(CloudScanners), sizeof(OrientReport), sizeof(VoxelRange), sizeof(FacetCounts),
+          sizeof(Piece::Digest), sizeof(Piece), sizeof(Survey), sizeof(PartComponents::Shared)})
         text.append(" ").append(std::to_string(size));
     return text;
 }

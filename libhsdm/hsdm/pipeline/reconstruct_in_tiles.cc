@@ -122,6 +122,7 @@ public:
         run(Pass::resolution, "resolution", 0.15, report_.seconds.octree, [&] { choose_resolution(group); });
         phases_.run("tiles", 0.2, report_.seconds.facets, [&] { make_facets(group); });
         note_options(estimates_, options_, report_); // this run's, whatever was kept
+        if (cloud_->extent().scanners.viewpoint) report_.options["sensors"] = "1";
     }
 
     /// What finish(input, facets, report) makes of the facets; nothing on other ranks than the first.
@@ -238,14 +239,24 @@ private:
         if (options_.normals == NormalSource::given)
             throw Error("normals given were asked for, but the cloud has none; use --normals auto or "
                         "estimate");
-        if (extent.has_scanners)
-            refuse_in_tiles("scanners are known, and normals would have to be turned towards them");
+        refuse_many(extent.scanners);
+    }
+
+    /// Relative to the cube. To be called where normals are turned towards them.
+    CloudScanners scanners() const {
+        const CloudScanners& known = cloud_->extent().scanners;
+        refuse_many(known);
+        return known.placed(cloud_->frame(), cloud_->origin());
+    }
+    static void refuse_many(const CloudScanners& scanners) {
+        if (scanners.are_many)
+            refuse_in_tiles("several scanners are known, and normals have to face that of each point");
     }
 
     void estimate_normals(std::size_t group) {
         const std::function<void(bool, const Ranks::Bytes&)> keep_begun =
             [&](bool sided, const Ranks::Bytes& begun) { keep(sided ? Pass::sided : Pass::cleaned, begun); };
-        const CloudNormalsOptions how{passes_of(group), memory_left(),
+        const CloudNormalsOptions how{passes_of(group), scanners(), memory_left(),
                                       passes_.is_kept() ? keep_begun : nullptr,
                                       std::exchange(normals_begun_, {})};
         const NormalsReport made = make_cloud_normals(*cloud_, *survey_, how, as_read_);
@@ -281,8 +292,8 @@ private:
                 steady_cloud_normals(*cloud_, *survey_, passes_of(group), store);
         noise = noise_by(consistency());
         if (consistency().doubtful())
-            report_.rejected["normals_mended"] =
-                mend_cloud_normals(*cloud_, *survey_, passes_of(group), memory_left(), store);
+            report_.rejected["normals_mended"] = mend_cloud_normals(
+                *cloud_, *survey_, scanners().orientation(), passes_of(group), memory_left(), store);
         return noise;
     }
     std::size_t memory_left() const { return tiles_.memory - std::min(tiles_.memory, bytes_of_program); }
