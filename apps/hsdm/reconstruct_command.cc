@@ -81,13 +81,14 @@ auto with_kept_told(std::optional<KeptScratch>& kept, const Ranks& ranks, bool g
     try {
         return make();
     } catch (const RefusedInTiles&) {
-        if (kept && (ranks.size() == 1 || gives_up))
+        if (kept && ranks.size() == 1) {
             kept->remove();
-        else
+            kept.reset();
+        } else if (!gives_up) {
             tell();
+        }
         throw;
     } catch (const OtherRankGaveUp&) {
-        if (kept) kept->remove();
         throw;
     } catch (...) {
         tell();
@@ -300,21 +301,27 @@ private:
     /// which memory allows: by the first of them.
     std::optional<std::vector<Report>> try_in_tiles(const PointsInParts& points, const CloudFiles& cloud,
                                                     Clock::time_point start, ProgressBar& bar) {
-        if (!may_be_one_piece(points)) return make_in_tiles(points, cloud, start, bar);
+        std::optional<KeptScratch> kept;
+        if (!may_be_one_piece(points)) {
+            arguments_.check_for_tiles(*tiles_);
+            return make_in_tiles(points, cloud, start, kept, bar);
+        }
         try {
-            return make_in_tiles(points, cloud, start, bar);
+            arguments_.check_for_tiles(*tiles_);
+        } catch (const OptionError& refusal) { // by all ranks
+            note_refusal(cloud, refusal.what());
+            return std::nullopt;
+        }
+        try {
+            return make_in_tiles(points, cloud, start, kept, bar);
         } catch (const RefusedInTiles& refusal) {
-            give_up(refusal.what(), cloud);
-        } catch (const OptionError& refusal) { // by all ranks; one piece tells what is wrong in itself
-            give_up(refusal.what(), cloud);
+            ranks_->give_up(refusal.what());
+            note_refusal(cloud, refusal.what());
         } catch (const OtherRankGaveUp& refusal) {
             note_refusal(cloud, refusal.what());
         }
+        if (kept) kept->remove(); // all know that nothing goes on with it
         return std::nullopt;
-    }
-    void give_up(const std::string& why, const CloudFiles& cloud) {
-        ranks_->give_up(why);
-        note_refusal(cloud, why);
     }
     bool may_be_one_piece(const PointsInParts& points) const {
         return ranks_ && (tiles_->memory == TileOptions::no_bound || fits_in_one_piece(points.size()));
@@ -329,8 +336,8 @@ private:
 
     /// The same in bounded memory. Reading is part of the other phases.
     std::vector<Report> make_in_tiles(const PointsInParts& points, const CloudFiles& cloud,
-                                      Clock::time_point start, ProgressBar& bar) {
-        arguments_.check_for_tiles(*tiles_);
+                                      Clock::time_point start, std::optional<KeptScratch>& kept,
+                                      ProgressBar& bar) {
         const double read_seconds = seconds_since(start);
         ReconstructOptions options = options_;
         options.progress = shown_on(bar);
@@ -344,7 +351,6 @@ private:
         const std::vector<std::uint64_t> seen = ranks.gather(points.fingerprint());
         if (std::ranges::count(seen, seen.front()) != ranks.size())
             throw Error(cloud.name(), "is not the same to all processes; put it where all of them see it");
-        std::optional<KeptScratch> kept;
         if (arguments_.resume) {
             refuse_moved(arguments_.scratch, ranks);
             kept.emplace(arguments_.scratch, ranks.rank(), arguments_.job(cloud, ranks.size()));

@@ -155,6 +155,11 @@ TEST_CASE("normals face the scanner in tiles as in one piece", "[pipeline][slow]
     }
 }
 
+TEST_CASE("noise that is far wider than the voxels asked for is refused in tiles", "[pipeline]") {
+    const PointCloud cloud = noisy_scan(support::sphere(1), 12, false, 1);
+    CHECK_THROWS_AS(reconstruct_in_tiles(view_of(cloud), {.depth = 12}, noisy_tiles()), RefusedInTiles);
+}
+
 TEST_CASE("where coarser voxels would help tiles say so, and one size is done", "[pipeline]") {
     const PointCloud cloud = support::thinned_on_one_side(
         support::sample(support::sphere(1), {.points = 20000}), Vec3(1, 0, 0), 0.3, 30);
@@ -182,5 +187,17 @@ TEST_CASE("parts of a cloud tell where coarser voxels help as the whole does", "
             }
             CHECK(windows.levels_above() == expected);
         }
+        const auto failures = support::run_ranks(3, [&](Ranks& ranks) {
+            SparseWindows windows(depth);
+            Octree part = whole;
+            std::vector<std::uint8_t> others(whole.size());
+            for (std::size_t i = 0; i < whole.size(); ++i) // the second has none
+                others[i] = (i < whole.size() / 7 ? 0 : 2) != ranks.rank();
+            remove_points(part, others);
+            windows.add(part);
+            windows.join(ranks);
+            if (windows.levels_above() != expected) throw Error("other levels by ranks");
+        });
+        for (const std::string& failure : failures) CHECK(failure == "");
     }
 }

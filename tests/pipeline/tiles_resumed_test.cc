@@ -107,7 +107,7 @@ void check_faults(const PointCloud& cloud, const ReconstructOptions& options, st
     const Run whole = run_until(std::size_t{1} << 40, cloud, options, nullptr);
     REQUIRE(whole.mesh);
     CHECK(whole.how.tiles > 2);
-    CHECK(whole.report.rejected.at("points_outlying") >= 1);
+    CHECK(whole.report.rejected.at("points_outlying") >= 1); // more of noisy ones
     std::size_t went_on = 0, tiles = 0, faults = 0;
     for (std::size_t fault = 1;; fault += step) {
         INFO("fault " << fault);
@@ -195,6 +195,14 @@ TEST_CASE("wherever a run in tiles fails the next one goes on, whatever it has t
 TEST_CASE("so it does where noisy points have been moved", "[pipeline][slow]") {
     const bool normals = GENERATE(true, false);
     check_faults(torus(normals, 0.04), {.depth = 4}, 7);
+}
+
+TEST_CASE("so it does where normals have been mended", "[pipeline][slow]") {
+    PointCloud cloud = support::sample(support::torus(1, 0.4), {.points = 2500, .normal_noise = 0.4});
+    for (std::size_t i = 0; i < cloud.size(); i += 5) cloud.normals[i] = -cloud.normals[i];
+    cloud.positions.push_back({0.03, 0.02, 0.01});
+    cloud.normals.push_back({0, 0, 1});
+    check_faults(cloud, {.depth = 4}, 7);
 }
 
 TEST_CASE("ranks go on with what all of them have kept", "[pipeline]") {

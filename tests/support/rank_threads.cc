@@ -74,6 +74,7 @@ std::vector<std::string> run_ranks_apart(int count, const std::function<void(Ran
 PointParts share_of(const PointCloud& cloud, const Ranks& ranks) {
     return [&cloud, rank = ranks.rank(), size = ranks.size()](const auto& visit) {
         PointCloud part;
+        part.sensor = cloud.sensor, part.sensors = cloud.sensors;
         for (auto i = static_cast<std::size_t>(rank); i < cloud.size(); i += static_cast<std::size_t>(size)) {
             part.positions.push_back(cloud.positions[i]);
             if (!cloud.normals.empty()) part.normals.push_back(cloud.normals[i]);

@@ -108,7 +108,8 @@ CloudExtent measure_extent(const PointParts& parts, Ranks& ranks) {
     extent.sample = std::move(own.sample);
     extent.sample_stride = own.sample_stride;
     if (extent.points == 0) throw Error("the cloud holds no point; nothing can be reconstructed");
-    if (extent.points >= no_index) refuse_in_tiles("the cloud holds 2^32 points or more");
+    if (extent.points >= no_index)
+        throw Error("the cloud holds 2^32 points or more; leave some out, or reconstruct parts of it");
     if (2 * extent.nonfinite > extent.points)
         throw Error(std::to_string(extent.nonfinite) + " of " + std::to_string(extent.points)
                     + " points have coordinates that are not finite; check how the file was exported");

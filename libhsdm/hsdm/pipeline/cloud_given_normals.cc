@@ -2,7 +2,6 @@
 
 #include "hsdm/core/large_vector.hh"
 #include "hsdm/normals/steady_normals.hh"
-#include "hsdm/normals/vote_on_normals.hh"
 #include "hsdm/pipeline/cloud_signs.hh"
 
 #include <algorithm>
@@ -10,28 +9,10 @@
 namespace hsdm {
 namespace {
 
-/// What the positions of a part tell.
-struct ToldNormals {
-    Neighbors neighbors;
-    EstimatedNormals estimate;
-    KnownPoints known;
-
-    ToldNormals(const CloudPart& part, const Estimating& how, PartStore& store)
-        : neighbors(store.neighbors(part, how.neighbors)),
-          estimate(estimate_normals(part.octree(), neighbors, how.estimate)),
-          known(part.known_by(neighbors)) {
-        known.step();
-        known.step(estimate.bent, 2 * how.estimate.rounds);
-        estimate.normals = refined_normals(part.octree(), neighbors, estimate);
-        known.step();
-        if (estimate.noise > estimation::rough) known.step();
-    }
-};
-
 Estimating estimating(ScratchCloud& cloud, const CloudSurvey& survey, const CloudPasses& passes) {
     Estimating how;
     how.neighbors.finest_level = survey.sums.finest_leaves();
-    how.estimate.noise = cloud_noise(cloud, survey, passes).relative;
+    how.estimate.noise = relative_noise(cloud, survey, passes);
     return how;
 }
 
@@ -45,11 +26,12 @@ NormalSample sample_of_told(ScratchCloud& cloud, const Survey& sums, std::span<c
     std::vector<Row> rows;
     for_parts(cloud, sums, ranges, store.widths, [&](const CloudPart& part) {
         if (part.lacks_neighbors(how.neighbors.count)) return false;
-        const ToldNormals told(part, how, store);
+        PartEstimate told(part, how, store);
+        const std::vector<Vec3> normals = told.refine(part);
         if (!told.known.all(part.begin(), part.end())) return false;
         for (std::size_t i = part.begin(); i < part.end(); ++i)
             if (const std::size_t number = part.number(i); NormalSample::holds(number, sums.points()))
-                push_large(rows, Row{number, {part.octree().positions[i], told.estimate.normals[i]}});
+                push_large(rows, Row{number, {part.octree().positions[i], normals[i]}});
         return true;
     });
     std::vector<Row> all = values_of_all(cloud.ranks(), rows);
@@ -97,16 +79,16 @@ std::size_t steady_cloud_normals(ScratchCloud& cloud, CloudSurvey& survey, const
     ScratchCloud next =
         with_normals(cloud, sums, ranges, store, [&](const CloudPart& part, std::vector<Vec3>& normals) {
             if (part.lacks_neighbors(how.neighbors.count)) return false;
-            ToldNormals told(part, how, store);
+            PartEstimate told(part, how, store);
+            told.estimate.normals = told.refine(part);
             turn_along(normals, told.estimate.normals);
-            vote_on_normals(part.octree(), told.neighbors, told.estimate);
-            told.known.step(told.estimate.bent, repeats::twice);
+            told.vote(part);
             if (!told.known.all(part.begin(), part.end())) return false;
             for (std::size_t i = part.begin(); i < part.end(); ++i)
                 changed += take_axis(told.estimate.normals[i], normals[i]);
             return true;
         });
-    cloud.replace_by(std::move(next));
+    cloud.take(std::move(next));
     survey.sums = survey_cloud(cloud, sums.points(), passes.most_points).sums;
     return cloud.ranks().sum(changed);
 }
@@ -140,7 +122,7 @@ std::size_t mend_cloud_normals(ScratchCloud& cloud, CloudSurvey& survey, OrientO
                      });
     CloudSurvey after = survey_cloud(next, survey.sums.points(), passes.most_points);
     if (came_of_noise(before, consistency_of(after, next))) return 0;
-    cloud.replace_by(std::move(next));
+    cloud.take(std::move(next));
     survey.sums = std::move(after.sums);
     return cloud.ranks().sum(turned);
 }

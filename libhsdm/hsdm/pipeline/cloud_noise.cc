@@ -91,10 +91,14 @@ double deviation_of(ScratchCloud& cloud, const Survey& sums, const std::vector<N
 
 } // namespace
 
-CloudNoise cloud_noise(ScratchCloud& cloud, const CloudSurvey& survey, const CloudPasses& passes,
-                       int neighbors) {
-    const std::vector<NoiseSample> samples = samples_of(cloud, survey.sums, passes, neighbors);
+CloudNoise cloud_noise(ScratchCloud& cloud, const CloudSurvey& survey, const CloudPasses& passes) {
+    const std::vector<NoiseSample> samples = samples_of(cloud, survey.sums, passes, NeighborOptions().count);
     return {deviation_of(cloud, survey.sums, samples, passes), estimate_noise(samples)};
+}
+
+double relative_noise(ScratchCloud& cloud, const CloudSurvey& survey, const CloudPasses& passes,
+                      int neighbors) {
+    return estimate_noise(samples_of(cloud, survey.sums, passes, neighbors));
 }
 
 } // namespace hsdm

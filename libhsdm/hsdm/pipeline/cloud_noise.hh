@@ -19,7 +19,9 @@ struct CloudPasses {
 
 /// In one pass over tiles, and one over each of the thinned clouds that it takes to tell. For all ranks at
 /// the same time. Throws Error where neighbours are farther off than tiles see.
-CloudNoise cloud_noise(ScratchCloud& cloud, const CloudSurvey& survey, const CloudPasses& passes,
-                       int neighbors = NeighborOptions().count);
+CloudNoise cloud_noise(ScratchCloud& cloud, const CloudSurvey& survey, const CloudPasses& passes);
+/// That alone, which takes no thinned clouds.
+double relative_noise(ScratchCloud& cloud, const CloudSurvey& survey, const CloudPasses& passes,
+                      int neighbors = NeighborOptions().count);
 
 } // namespace hsdm

@@ -2,7 +2,6 @@
 
 #include "hsdm/normals/arcs.hh"
 #include "hsdm/normals/noise.hh"
-#include "hsdm/normals/vote_on_normals.hh"
 #include "hsdm/pipeline/cloud_signs.hh"
 #include "hsdm/pipeline/cloud_smoothing.hh"
 #include "hsdm/pipeline/stray_search.hh"
@@ -27,13 +26,10 @@ public:
         PartNormals made(part, how_, store_);
         EstimatedNormals& estimate = made.estimate;
         const std::vector<std::uint8_t> turns = turns_of(made.patches, made.signs(signs_));
-        std::vector<Vec3> refined = refined_normals(part.octree(), made.neighbors, estimate);
-        made.known.step();
-        if (estimate.noise > estimation::rough) made.known.step();
+        std::vector<Vec3> refined = made.refine(part);
         turn_normals({turns, {}}, refined);
         estimate.normals = std::move(refined);
-        vote_on_normals(part.octree(), made.neighbors, estimate);
-        made.known.step(estimate.bent, repeats::twice);
+        made.vote(part);
         const bool bends = signs_.report.of_layers == 0; // as make_normals() has it
         if (bends) bend_to_arcs(part.octree(), made.neighbors, estimate);
         // Which are on arcs at first, the rounds, and which are backed.
@@ -70,16 +66,17 @@ struct Begun {
     SignsOfAll signs; ///< if it is
 };
 
-/// How neighbours are sought and planes fitted, by the noise of all points.
+/// How neighbours are sought and planes fitted, by the noise of all points relative to how far neighbours
+/// are.
 Estimating estimating(ScratchCloud& cloud, const CloudSurvey& survey, const CloudPasses& passes,
-                      CloudNoise noise) {
+                      double noise) {
     Estimating how;
-    if (const int wanted = neighbors_for_noise(noise.relative); wanted > how.neighbors.count) {
+    if (const int wanted = neighbors_for_noise(noise); wanted > how.neighbors.count) {
         how.neighbors.count = wanted;
-        noise = cloud_noise(cloud, survey, passes, wanted);
+        noise = relative_noise(cloud, survey, passes, wanted);
     }
     how.neighbors.finest_level = survey.sums.finest_leaves();
-    how.estimate.noise = noise.relative;
+    how.estimate.noise = noise;
     return how;
 }
 
@@ -99,9 +96,9 @@ void clean(ScratchCloud& cloud, CloudSurvey& survey, const CloudPasses& passes, 
     if (!(noise.deviation <= SmoothOptions().least_noise * survey.spacing)) {
         report.smoothed =
             smooth_cloud(cloud, survey, noise.deviation, passes.plan, passes.most_points, store, as_read);
-        noise = cloud_noise(cloud, survey, passes);
+        noise.relative = relative_noise(cloud, survey, passes);
     }
-    begun.how = estimating(cloud, survey, passes, noise);
+    begun.how = estimating(cloud, survey, passes, noise.relative);
     report.noise = *begun.how.estimate.noise;
 }
 
@@ -145,14 +142,15 @@ NormalsReport make_cloud_normals(ScratchCloud& cloud, CloudSurvey& survey, const
         begun.report.orientation = begun.signs.report;
         keep(true);
     }
-    ScratchCloud next = cloud.without_normals_yet();
+    ScratchCloud next = cloud.emptied(true);
     SidedPass pass(begun.how, begun.signs, store, next);
     const std::vector<VoxelRange> ranges = options.passes.plan(cloud, options.passes.ghost_voxels);
     for_parts(cloud, survey.sums, ranges, store.widths,
               [&](const CloudPart& part) { return pass.add(part); });
     NormalsReport report = begun.report;
     report.bent = cloud.ranks().sum(pass.bent), report.missing = cloud.ranks().sum(pass.missing);
-    cloud.take_sorted(std::move(next));
+    next.finish_sorted();
+    cloud.take(std::move(next));
     return report;
 }
 

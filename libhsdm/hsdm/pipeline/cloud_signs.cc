@@ -2,6 +2,7 @@
 
 #include "hsdm/core/large_vector.hh"
 #include "hsdm/errors.hh"
+#include "hsdm/normals/vote_on_normals.hh"
 #include "hsdm/octree/spacing.hh"
 
 #include <algorithm>
@@ -254,16 +255,30 @@ Index SignsOfAll::place(Index patch) const {
     return static_cast<Index>(at - number.begin());
 }
 
-PartNormals::PartNormals(const CloudPart& part, const Estimating& how, PartStore& store)
-    : part_(part),
-      neighbors(store.neighbors(part, how.neighbors)),
+PartEstimate::PartEstimate(const CloudPart& part, const Estimating& how, PartStore& store)
+    : neighbors(store.neighbors(part, how.neighbors)),
       estimate(estimate_normals(part.octree(), neighbors, how.estimate)),
       known(part.known_by(neighbors)) {
+    known.step();                                       // what is bent hangs on how far neighbours spread
+    known.step(estimate.bent, 2 * how.estimate.rounds); // as estimate_normals() renews them
+}
+
+std::vector<Vec3> PartEstimate::refine(const CloudPart& part) {
+    known.step();
+    if (estimate.noise > estimation::rough) known.step();
+    return refined_normals(part.octree(), neighbors, estimate);
+}
+
+void PartEstimate::vote(const CloudPart& part) {
+    vote_on_normals(part.octree(), neighbors, estimate);
+    known.step(estimate.bent, repeats::twice);
+}
+
+PartNormals::PartNormals(const CloudPart& part, const Estimating& how, PartStore& store)
+    : PartEstimate(part, how, store), part_(part) {
     if (how.normals == Estimating::Normals::given) estimate.normals = part.octree().normals;
     if (how.normals == Estimating::Normals::along_given) turn_along(part.octree().normals, estimate.normals);
     patches = build_patches(part.octree(), neighbors, estimate);
-    known.step();                                       // what is bent hangs on how far neighbours spread
-    known.step(estimate.bent, 2 * how.estimate.rounds); // as estimate_normals() renews them
     known.step_leaves();
     for (std::size_t i = 0; i < part.octree().size(); ++i)
         if (patches.of_point[i] == first_point.size()) first_point.push_back(static_cast<Index>(i));

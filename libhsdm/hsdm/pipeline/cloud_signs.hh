@@ -29,10 +29,27 @@ struct SignsOfAll {
     Index place(Index patch) const;
 };
 
-/// Normals of a part and its patches, with their number in the whole: that of their first point.
-class PartNormals {
+/// What the positions of a part tell, and of which of its points that is known.
+struct PartEstimate {
+    Neighbors neighbors;
+    EstimatedNormals estimate;
+    KnownPoints known;
+
+    PartEstimate(const CloudPart& part, const Estimating& how, PartStore& store);
+    /// refined_normals()
+    std::vector<Vec3> refine(const CloudPart& part);
+    /// vote_on_normals()
+    void vote(const CloudPart& part);
+};
+
+/// The same or given normals of a part, and its patches, with their number in the whole: that of their first
+/// point.
+class PartNormals : public PartEstimate {
 public:
     PartNormals(const CloudPart& part, const Estimating& how, PartStore& store);
+
+    Patches patches;
+    std::vector<Index> first_point; ///< per patch
 
     Index number(Index patch) const { return part_.number(first_point[patch]); }
     /// Of patches that are not known 1.
@@ -40,13 +57,6 @@ public:
 
 private:
     const CloudPart& part_;
-
-public:
-    Neighbors neighbors;
-    EstimatedNormals estimate;
-    KnownPoints known;
-    Patches patches;
-    std::vector<Index> first_point; ///< per patch
 };
 
 /// Of all patches, by what parts find, in one pass, and one more where sheets may be layers. The first rank

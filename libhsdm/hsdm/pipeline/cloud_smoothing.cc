@@ -53,12 +53,15 @@ SheetCounts of_all(const SheetCounts& own, Ranks& ranks) {
     return all;
 }
 
-/// Points of a part that are not all known may lie anywhere, but must lie in the lattice.
-std::vector<Vec3> within(std::vector<Vec3> positions, const Box& box) {
-    for_each_index(positions.size(), chunks::light, [&](Index i) {
-        for (unsigned k = 0; k < 3; ++k) positions[i][k] = std::clamp(positions[i][k], box.lo[k], box.hi[k]);
+/// Points of a part of which not all is known might go anywhere, but must not get among those of which it is.
+void keep_within(const std::vector<Vec3>& from, const MovedBox& all, std::vector<Vec3>& to) {
+    const double far = all.farthest * (1 + 1e-9) + 1e-15 * all.box.extent(); // no known one goes as far
+    for_each_index(to.size(), chunks::light, [&](Index i) {
+        for (unsigned k = 0; k < 3; ++k) {
+            to[i][k] = std::clamp(to[i][k], from[i][k] - far, from[i][k] + far);
+            to[i][k] = std::clamp(to[i][k], all.box.lo[k], all.box.hi[k]);
+        }
     });
-    return positions;
 }
 
 /// The steps of smooth_points(), each a pass over tiles that finds what the next one must know of all points.
@@ -96,13 +99,14 @@ public:
             for_tiles(cloud, width_of_finer() + width_of(*finer_, finer_moved_),
                       [&](const Octree& part, Index begin, Index end) {
                           MovedPoints moved = onto_finer_planes(part);
+                          keep_within(part.positions, finer_moved_, moved.positions);
                           undo_shrinking(*finer_, finer_moved_.box, part, moved);
                           visit(part, begin, end, moved);
                       });
         else
             for_tiles(cloud, planes_->width_of_planes() + width_of(*planes_, moved_),
                       [&](const Octree& part, Index begin, Index end) {
-                          MovedPoints moved = planes_->onto_planes(part.positions, box_);
+                          MovedPoints moved = onto_planes(part);
                           undo_shrinking(*planes_, moved_.box, part, moved);
                           visit(part, begin, end, moved);
                       });
@@ -150,9 +154,10 @@ private:
         SheetCounts own;
         for_tiles(cloud, planes_->width_of_planes() + width_of(*planes_, moved_),
                   [&](const Octree& part, Index begin, Index end) {
-                      const MovedPoints moved = planes_->onto_planes(part.positions, box_);
-                      own += planes_->count_sheets(part.positions, lattice(*planes_, moved_.box, moved),
-                                                   moved, [&](Index i) { return i >= begin && i < end; });
+                      const MovedPoints moved = onto_planes(part);
+                      own +=
+                          planes_->count_sheets(part.positions, planes_->around(moved.positions, moved_.box),
+                                                moved, [&](Index i) { return i >= begin && i < end; });
                   });
         return of_all(own, cloud.ranks());
     }
@@ -171,12 +176,15 @@ private:
         finer_moved_ = of_all(own, cloud.ranks());
     }
 
-    static VoxelLattice lattice(const PlaneSmoothing& smoothing, const Box& box, const MovedPoints& moved) {
-        return smoothing.around(within(moved.positions, box), box);
+    /// Once it is known how far points move.
+    MovedPoints onto_planes(const Octree& part) const {
+        MovedPoints moved = planes_->onto_planes(part.positions, box_);
+        keep_within(part.positions, moved_, moved.positions);
+        return moved;
     }
     static void undo_shrinking(const PlaneSmoothing& smoothing, const Box& box, const Octree& part,
                                MovedPoints& moved) {
-        smoothing.undo_shrinking(part.positions, lattice(smoothing, box, moved), moved);
+        smoothing.undo_shrinking(part.positions, smoothing.around(moved.positions, box), moved);
     }
 
     const PlanRanges& plan_;
@@ -204,7 +212,7 @@ double move_points(ScratchCloud& cloud, const CloudSurvey& survey, double noise,
         });
     });
     as_read->finish_sorted();
-    cloud.replace_by(std::move(next));
+    cloud.take(std::move(next));
     return noise;
 }
 
@@ -221,7 +229,7 @@ void leave_out_moved(std::vector<PointRow>&& gone, std::size_t most, ScratchClou
         }
     });
     left.finish_sorted();
-    as_read.replace_by(std::move(left));
+    as_read.take(std::move(left));
 }
 
 } // namespace

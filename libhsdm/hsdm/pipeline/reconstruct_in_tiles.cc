@@ -113,7 +113,8 @@ public:
         if (passes_.done() != Pass::none) take_state();
         report_.threads = tbb::this_task_arena::max_concurrency();
         run(Pass::sorted, "octree", 0, report_.seconds.octree, [&] { sort_points(parts); });
-        const std::size_t group = points_at_once(tiles, 0, bytes_per_point);
+        constexpr std::size_t bytes_kept = sizeof(float); // of each point, by some passes
+        const std::size_t group = points_at_once(tiles, bytes_kept * cloud_->points_here(), bytes_per_point);
         os::give_back_freed_memory(); // here and later, or what one phase had is held beside what the next
                                       // has
         run(Pass::surveyed, "survey", 0.1, report_.seconds.normals, [&] { survey_points(group); });
@@ -311,7 +312,8 @@ private:
                 tiles_.ghost_voxels, group};
     }
 
-    /// Where no depth is given voxels follow from the points without outliers, which move to their cube.
+    /// Mends given normals. Where no depth is given voxels follow from the points without outliers, which
+    /// move to their cube; noisy points move for such voxels. All of it is one pass.
     void choose_resolution(std::size_t group) {
         const int ghost = tiles_.ghost_voxels;
         const double noise = estimates_ ? smoothed_.noise : check_given_normals(group);

@@ -374,7 +374,8 @@ void ScratchCloud::sort_in_cells(std::size_t most, const std::function<void(cons
         for_each_in_order(part.size(), [&](std::size_t i) { next.add(part, i); });
         visit(part);
     });
-    take_sorted(std::move(next));
+    next.finish_sorted();
+    take(std::move(next));
 }
 
 void ScratchCloud::for_tiles(std::span<const VoxelRange> ranges, int ghost,
@@ -506,11 +507,6 @@ void ScratchCloud::finish_sorted() {
     scratch_->finish();
     gather_cells();
     in_order_ = true;
-}
-
-void ScratchCloud::take_sorted(ScratchCloud&& next) {
-    next.finish_sorted();
-    take(std::move(next));
 }
 
 void ScratchCloud::fill(

@@ -94,29 +94,22 @@ public:
     Box box_in_cube(std::size_t most) const;
     Box box_of_points(std::size_t most) const;
     static PointRow row_at(const Octree& octree, std::size_t point);
-    /// The same cube and cells of the same ranks, for points with normals, which add() gives it: of a cell in
-    /// the order of octrees.
-    ScratchCloud without_normals_yet() const { return emptied(true); }
+    /// The same cube and ranks without points: each rank gives those of its own cells, of a cell in the order
+    /// of octrees, by add() and finish_sorted(), or any by fill(). For all ranks at the same time.
+    ScratchCloud emptied(bool has_normals) const;
     void add(const Octree& octree, std::size_t point);
     void add(MortonCode code, const PointRow& row); ///< the same; `code`: of level 21
-    /// All have been added. For all ranks at the same time.
     void finish_sorted();
-    /// Has the points of such a one from now on. For all ranks at the same time.
-    void take_sorted(ScratchCloud&& next);
-
-    /// The same cube and ranks without points: these come by add(), or by fill() in any order.
-    ScratchCloud emptied(bool has_normals) const;
     /// work(put_row) calls put_row(row) for points relative to the cube, each of which goes to the rank that
-    /// has its cell. For all ranks at the same time.
+    /// has its cell.
     void fill(const std::function<void(const std::function<void(const PointRow&)>& put_row)>& work);
     /// Has the points of that one from now on.
-    void replace_by(ScratchCloud&& next) { take(std::move(next)); }
+    void take(ScratchCloud&& next);
 
 private:
     /// Without points yet: those of another one, in another cube.
     ScratchCloud(const ScratchCloud& before, const Box& bounds, double extent, int depth);
     ScratchCloud without_points() const;
-    void take(ScratchCloud&& next);
     /// The cell of a position relative to the cube.
     MortonCode cell_of(const Vec3& relative) const;
     template <class Place>
