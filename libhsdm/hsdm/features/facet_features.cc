@@ -218,19 +218,11 @@ void FacetFan::gather(Index vertex) {
     spokes_.clear();
     sharp_edges_ = 0;
     centre_ = facets_.positions[vertex];
-    const auto next = [&](Index c) { return next_side(facets_, links_.facet[c], c); };
-    Index c = links_.side_out[vertex];
-    if (const Index open = links_.open_in[vertex]; open != no_index) {
+    if (const Index open = links_.open_in[vertex]; open != no_index)
         add(facets_.corners[open], no_index, features_.sharp[open]);
-        c = next(open);
-    }
-    const Index begin = c;
-    do {
-        add(facets_.corners[next(c)], links_.facet[c], features_.sharp[c]);
-        const Index twin = links_.twin[c];
-        if (twin == no_index) break;
-        c = next(twin);
-    } while (c != begin);
+    for_sides_from(facets_, links_, vertex, [&](Index c) {
+        add(facets_.corners[next_side(facets_, links_.facet[c], c)], links_.facet[c], features_.sharp[c]);
+    });
 }
 
 VertexClass FacetFan::kind() const {

@@ -20,16 +20,7 @@ struct LinkedMesh {
     /// one.
     template <class Visit>
     void for_sides_from(Index vertex, const Visit& visit) const {
-        const auto next = [&](Index side) { return next_side(facets, links.facet[side], side); };
-        const Index open = links.open_in[vertex];
-        const Index begin = open == no_index ? links.side_out[vertex] : next(open);
-        Index side = begin;
-        do {
-            visit(side);
-            const Index twin = links.twin[side];
-            if (twin == no_index) return;
-            side = next(twin);
-        } while (side != begin);
+        hsdm::for_sides_from(facets, links, vertex, visit);
     }
 };
 

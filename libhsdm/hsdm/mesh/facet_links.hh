@@ -43,4 +43,20 @@ inline bool have_same_vertices(std::span<const Index> a, std::span<const Index> 
            && std::all_of(a.begin(), a.end(), b_has);
 }
 
+/// Calls visit(side) for the sides that start at a vertex of one fan, clockwise, as a half-edge mesh goes
+/// round it, from the one behind the border if there is one.
+template <class Visit>
+void for_sides_from(const PolygonMesh& facets, const FacetLinks& links, Index vertex, const Visit& visit) {
+    const auto next = [&](Index side) { return next_side(facets, links.facet[side], side); };
+    const Index open = links.open_in[vertex];
+    const Index begin = open == no_index ? links.side_out[vertex] : next(open);
+    Index side = begin;
+    do {
+        visit(side);
+        const Index twin = links.twin[side];
+        if (twin == no_index) return;
+        side = next(twin);
+    } while (side != begin);
+}
+
 } // namespace hsdm
