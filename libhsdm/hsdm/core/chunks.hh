@@ -68,27 +68,30 @@ void for_each_index(std::size_t n, std::size_t chunk_size, F&& f) {
     });
 }
 
-/// Concatenates what the chunks produced.
-template <class T>
-std::vector<T> joined(const std::vector<std::vector<T>>& parts) {
+/// Concatenates what the chunks produced; then comes what else is given.
+template <class T, class... Last>
+std::vector<T> joined(const std::vector<std::vector<T>>& parts, const Last&... last) {
     std::vector<std::size_t> offset(parts.size() + 1, 0);
     for (std::size_t i = 0; i < parts.size(); ++i) offset[i + 1] = offset[i] + parts[i].size();
-    std::vector<T> whole = unwritten_vector<T>(offset.back());
+    std::vector<T> whole;
+    reserve_large(whole, offset.back() + sizeof...(last));
+    resize_unwritten(whole, offset.back());
     for_each_task(parts.size(), [&](std::size_t i) {
         std::copy(parts[i].begin(), parts[i].end(), whole.begin() + static_cast<std::ptrdiff_t>(offset[i]));
     });
+    (whole.push_back(last), ...);
     return whole;
 }
 
 /// What f(begin, end, part) appends to `part` for consecutive ranges of [0, n), one after the other; in
-/// parallel, by chunks of that size, or less where they would be few.
-template <class T, class F>
-std::vector<T> collected(std::size_t n, std::size_t chunk_size, F&& f) {
+/// parallel, by chunks of that size, or less where they would be few. Then comes what else is given.
+template <class T, class F, class... Last>
+std::vector<T> collected(std::size_t n, std::size_t chunk_size, F&& f, const Last&... last) {
     chunk_size = chunk_of_few(n, chunk_size);
     std::vector<std::vector<T>> parts(chunk_count(n, chunk_size));
     for_chunks(n, chunk_size,
                [&](std::size_t begin, std::size_t end, std::size_t chunk) { f(begin, end, parts[chunk]); });
-    return joined(parts);
+    return joined(parts, last...);
 }
 
 /// 0, 1, ... n - 1.

@@ -48,7 +48,8 @@ struct Octree {
     Vec3 origin{0, 0, 0}; ///< least corner of the bounding cube; positions below are relative to it
     double extent = 0; ///< edge of the bounding cube: the cloud's longest side, not padded, unless asked for
     Box bounds;        ///< box of the cloud, as the cloud has it but for the unit
-    std::vector<MortonCode> codes; ///< per point, level 21, ascending
+    /// Per point, level 21, ascending. Once a level is extracted nothing of it asks for them: they may be freed.
+    std::vector<MortonCode> codes;
     std::vector<Vec3> positions;   ///< per point, relative to origin
     std::vector<Vec3> normals;     ///< per point, unit or (0, 0, 0); empty if the cloud has none
     std::vector<Index> source;     ///< per point, its index in the cloud (the first of merged duplicates)
@@ -60,7 +61,7 @@ struct Octree {
     };
     std::vector<Duplicate> duplicates;
 
-    std::size_t size() const { return codes.size(); }
+    std::size_t size() const { return positions.size(); }
     bool has_normals() const { return !normals.empty(); }
     double voxel_size(int depth) const { return extent / static_cast<double>(1u << depth); }
 };

@@ -78,6 +78,7 @@ CompletedCloud complete_cloud(const Octree& octree, const OctreeLevel& level, co
         source = source < octree.size() ? octree.source[source] : source_of_added;
     });
     completed.level = extract_level(completed.octree, cube.depth);
+    release(completed.octree.codes);
     return completed;
 }
 
