@@ -305,8 +305,10 @@ std::vector<EdgeCollapse> build_facets(const Octree& octree, const OctreeLevel& 
     dual.crossings = [&] {
         LocalSheets local = group_local_sheets(dual.grid, sets, related, h);
         extend_grid_points(dual.grid, local, level);
-        return label_grid_signs(dual.grid, local, sets,
-                                find_crossings(dual.grid, local, sets, related, h, options.crossing), h,
+        Crossings candidates = find_crossings(dual.grid, local, sets, related, h, options.crossing);
+        std::vector<double> beliefs = beliefs_of_sheets(local, h);
+        local = LocalSheets();
+        return label_grid_signs(dual.grid, std::move(beliefs), sets, std::move(candidates), h,
                                 options.all_round);
     }();
     const auto pair = [&] { dual.links = pair_crossings(dual.grid, dual.crossings, sets, related); };
