@@ -114,7 +114,7 @@ public:
         // The last ring settles what no vote reached.
         for (int ring = 0; ring < repeats::few; ++ring) vote(false, ring + 1 < repeats::few);
         settle_doubtful();
-        release(belief_, below_);
+        release(belief_);
         choose_all();
         return std::move(list_);
     }
