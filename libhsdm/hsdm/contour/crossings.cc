@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <utility>
 
 namespace hsdm {
 namespace {
@@ -75,11 +76,11 @@ public:
         if (ends_[1] == no_index || passes_by()
             || (!local_.has_members(ends_[0]) && !local_.has_members(ends_[1])))
             return;
-        for (unsigned end : {0u, 1u}) local_.gather(grid_, sets_, ends_[end], members_[end]);
         const VoxelCoord c = grid_.coord(grid_point);
         low_ = Vec3(c[0], c[1], c[2]) * h_;
         join_sheets();
         if (!measure()) return;
+        count_points();
         const std::size_t begin = found.size();
         for (std::size_t i = 0; i < count_; ++i) {
             if (!sheets_[i].crosses) continue;
@@ -130,15 +131,15 @@ private:
 
     /// Local sheets at the two ends are one along the edge if they share a set of a voxel beside it.
     void join_sheets() {
-        const auto& [low, high] = members_;
         const std::size_t n0 = local_.sheets_at(ends_[0]).size(), n1 = local_.sheets_at(ends_[1]).size();
         for (std::size_t i = 0; i < n0 + n1; ++i) parent_[i] = static_cast<std::uint8_t>(i);
         if (n0 == 1 && n1 == 1 && holds_beside(ends_[0])) {
             parent_[1] = 0;
         } else {
-            for (const SheetMember& a : low) {
+            gather_members();
+            for (const SheetMember& a : members_[0]) {
                 if (!beside(a, 0)) continue;
-                for (const SheetMember& b : high)
+                for (const SheetMember& b : members_[1])
                     if (b.set == a.set) {
                         const std::size_t ra = root(a.sheet), rb = root(n0 + b.sheet);
                         parent_[std::max(ra, rb)] = static_cast<std::uint8_t>(std::min(ra, rb));
@@ -161,10 +162,17 @@ private:
             sheet.normal += part.normal;
         }
         offset_[0] = 0, offset_[1] = n0;
-        count_points();
+    }
+
+    /// Most edges that are not crossed can do without.
+    void gather_members() {
+        for (unsigned end : {0u, 1u})
+            if (std::exchange(members_of_[end], ends_[end]) != ends_[end])
+                local_.gather(grid_, sets_, ends_[end], members_[end]);
     }
 
     void count_points() {
+        gather_members();
         for (unsigned end : {0u, 1u})
             for (const SheetMember& m : members_[end]) {
                 EdgeSheet& sheet = sheets_[number_[offset_[end] + m.sheet]];
@@ -178,7 +186,9 @@ private:
     bool measure() {
         for (std::size_t i = 0; i < count_; ++i) {
             measure(sheets_[i]);
-            if (sheets_[i].crosses && sheets_[i].bent) cross_at_crease(i);
+            if (!sheets_[i].crosses || !sheets_[i].bent) continue;
+            gather_members();
+            cross_at_crease(i);
         }
         relations_for_ = most;
         return std::any_of(sheets_.begin(), sheets_.begin() + static_cast<std::ptrdiff_t>(count_),
@@ -404,7 +414,8 @@ private:
     const CrossingOptions& options_;
 
     Index ends_[2] = {0, 0};
-    SheetMembers members_[2]; // of the ends
+    Index members_of_[2] = {no_index, no_index};
+    SheetMembers members_[2]; // of those grid points
     unsigned axis_ = 0;
     Vec3 low_;
     std::size_t offset_[2] = {0, 0};

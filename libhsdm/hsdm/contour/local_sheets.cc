@@ -294,12 +294,17 @@ LocalSheets group_local_sheets(const GridPoints& grid, const NormalSets& sets, c
     for_chunks(n, chunks::usual, [&](std::size_t begin, std::size_t end, std::size_t) {
         SheetsAtPoint grid_point;
         for (auto i = static_cast<Index>(begin); i < end; ++i) {
-            result.gather(grid, sets, i, grid_point.members);
-            grid_point.renumber();
+            grid_point.sheet_count = result.first_sheet[i + 1] - result.first_sheet[i];
+            if (grid_point.sheet_count < 2) {
+                grid_point.members.gather(grid.voxels[i], sets); // all of sheet 0
+            } else {
+                result.gather(grid, sets, i, grid_point.members);
+                grid_point.renumber();
+                grid_point.copy_sheets_of_members(result.sheets_of_members(i));
+            }
             const VoxelCoord c = grid.coord(i);
             grid_point.measure(Vec3(c[0], c[1], c[2]) * voxel_size, sets, voxel_size);
             grid_point.snap(voxel_size);
-            grid_point.copy_sheets_of_members(result.sheets_of_members(i));
             std::copy_n(grid_point.sheets.begin(), grid_point.sheet_count,
                         result.sheets.data() + result.first_sheet[i]);
         }

@@ -27,7 +27,7 @@ struct SheetMembers {
 
     const SheetMember* begin() const { return all.data(); }
     const SheetMember* end() const { return all.data() + count; }
-    /// Those of all voxels, by octant; their sheets are not known yet.
+    /// Those of all voxels, by octant, as if all were of one sheet.
     void gather(const std::array<Index, 8>& voxels, const NormalSets& sets) {
         count = 0;
         for (std::uint8_t octant = 0; octant < 8; ++octant)

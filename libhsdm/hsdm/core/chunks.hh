@@ -109,7 +109,7 @@ std::vector<T> collected(std::size_t n, std::size_t chunk_size, F&& f, const Las
         for (const std::vector<T>& part : parts) size += part.size();
         if (done < chunks && size > whole.capacity()) { // as many of each chunk that is left, and some more
             const std::size_t in_all = size / done * chunks;
-            reserve_ahead(whole, std::max(in_all + in_all / 16, size + size / 4));
+            reserve_ahead(whole, std::max(in_all + in_all / 32, size + size / 4));
         }
         reserve_large(whole, size);
         append_parts<T>(parts, whole);

@@ -391,6 +391,7 @@ void keep_freed_memory() noexcept {
     constexpr int kept = 1 << 30;    // at the end of the heap: little beside such clouds
     ::mallopt(M_MMAP_THRESHOLD, largest);
     ::mallopt(M_TRIM_THRESHOLD, kept);
+    ::mallopt(M_ARENA_MAX, 1); // else what chunks' parts held stays with the thread that made them
 #endif
 }
 

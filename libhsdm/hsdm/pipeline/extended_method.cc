@@ -101,6 +101,7 @@ NormalSets separated_sets(const MethodInput& in, Report& report) {
 
 /// How many are not completed ones.
 std::size_t measured_points(const Octree& octree) {
+    if (octree.source.empty()) return octree.size();
     return static_cast<std::size_t>(std::ranges::count_if(octree.source, is_measured));
 }
 
