@@ -59,7 +59,7 @@ double bytes_of(const GridPoints& grid) {
     return bytes_of(grid.codes, grid.voxels, grid.next);
 }
 double bytes_of(const LocalSheets& sheets) {
-    return bytes_of(sheets.members, sheets.sheets, sheets.first_member, sheets.first_sheet);
+    return bytes_of(sheets.sheet_of, sheets.sheets, sheets.first_member, sheets.first_sheet);
 }
 double bytes_of(const Crossings& crossings) {
     return bytes_of(crossings.crossings, crossings.first);
@@ -141,7 +141,9 @@ void make_crossings(Work& w) {
     w.candidates = find_crossings(w.dual.grid, w.sheets, w.sets, relation_of(w), w.level.voxel_size);
 }
 void make_signs(Work& w) {
-    w.signed_crossings = label_grid_signs(w.dual.grid, w.sheets, w.sets, w.candidates, w.level.voxel_size);
+    const double h = w.level.voxel_size;
+    w.signed_crossings = label_grid_signs(w.dual.grid, beliefs_of_sheets(w.sheets, h), w.sets,
+                                          std::move(w.spare_candidates), h);
 }
 void make_links(Work& w) {
     const RelationTest related = relation_of(w);
@@ -290,12 +292,13 @@ std::vector<Step> steps_of_contour() {
         {"crossings", "find_crossings", [](Work& w) { w.candidates = {}; }, make_crossings,
          [](const Work& w) {
              return bytes_of(w.dual.grid) + bytes_of(w.sheets) + bytes_of(w.sets.sets)
-                    + bytes_of(w.candidates.crossings) + bytes_of(w.candidates.standing);
+                    + bytes_of(w.candidates);
          }},
-        {"signs", "label_grid_signs", [](Work& w) { w.signed_crossings = {}; }, make_signs,
+        {"signs", "label_grid_signs",
+         [](Work& w) { w.signed_crossings = {}, w.spare_candidates = w.candidates; }, make_signs,
          [](const Work& w) {
-             return bytes_of(w.dual.grid) + bytes_of(w.sheets) + bytes_of(w.candidates.crossings)
-                    + bytes_of(w.candidates.standing) + bytes_of(w.signed_crossings);
+             return bytes_of(w.dual.grid) + bytes_of(w.sheets) + bytes_of(w.candidates)
+                    + bytes_of(w.signed_crossings);
          }},
         {"links", "pair_crossings, trim_unsupported, drop_tips",
          [](Work& w) {

@@ -27,7 +27,7 @@ struct Work {
     NormalSets raw_sets{}, sets{}; ///< before and after outliers are dropped and patches separated
     GridPoints corners{};          ///< of occupied voxels; dual.grid has those that sheets need beside them
     LocalSheets sheets{};
-    CrossingCandidates candidates{};
+    Crossings candidates{}, spare_candidates{};
     Crossings signed_crossings{}; ///< before those beyond the end of the data are dropped
     DualMesh dual{};
     PlacedVertices vertices{};

@@ -16,7 +16,7 @@ struct Found {
     RelationTest related;
     GridPoints grid;
     LocalSheets local;
-    CrossingCandidates candidates;
+    Crossings candidates;
 
     Found(const support::Solid& solid, std::size_t points, int depth)
         : octree(build_octree(scan(solid, points), {})),
@@ -33,12 +33,15 @@ struct Found {
         return support::sample(solid, {.points = points});
     }
 
-    Crossings settled() const { return label_grid_signs(grid, local, sets, candidates, level.voxel_size); }
+    Crossings settled() const {
+        return label_grid_signs(grid, beliefs_of_sheets(local, level.voxel_size), sets, candidates,
+                                level.voxel_size);
+    }
     Crossings standing() const {
         Crossings result;
-        for (Index edge = 0; edge + 1 < candidates.crossings.first.size(); ++edge) {
-            for (Index x = candidates.crossings.first[edge]; x < candidates.crossings.first[edge + 1]; ++x)
-                if (candidates.standing[x]) result.crossings.push_back(candidates.crossings.crossings[x]);
+        for (Index edge = 0; edge + 1 < candidates.first.size(); ++edge) {
+            for (const Crossing& x : candidates.on_edge(edge))
+                if (x.standing) result.crossings.push_back(x);
             result.first.push_back(static_cast<Index>(result.crossings.size()));
         }
         return result;
@@ -63,8 +66,8 @@ TEST_CASE("crossings lost at random come back and the surface closes", "[contour
     const std::size_t all = found.settled().crossings.size();
     support::Random random(3);
     std::size_t lost = 0;
-    for (auto& standing : found.candidates.standing)
-        if (standing && random.uniform() < 0.05) standing = 0, ++lost;
+    for (Crossing& x : found.candidates.crossings)
+        if (x.standing && random.uniform() < 0.05) x.standing = false, ++lost;
     const Crossings crossings = found.settled();
     CHECK(lost > 50);
     CHECK(crossings.settled == lost);
@@ -78,12 +81,11 @@ TEST_CASE("what is clipped just beyond a crease is less sure to be clipped", "[c
     const Found found(support::box(2 * half).placed(pose), 20000, 5);
     const double error = 0.15 * found.level.voxel_size;
     std::size_t unsure = 0, as_far = 0;
-    for (Index x = 0; x < found.candidates.standing.size(); ++x) {
-        const double sureness = found.candidates.sureness[x];
+    for (const Crossing& crossing : found.candidates.crossings) {
+        const double sureness = crossing.sureness;
         CHECK((sureness >= 0 && sureness <= 1));
-        if (found.candidates.standing[x]) CHECK(sureness == 1);
+        if (crossing.standing) CHECK(sureness == 1);
         if (sureness == 1) continue;
-        const Crossing& crossing = found.candidates.crossings.crossings[x];
         const Vec3 at = pose.to_local(crossing_position(found.grid, crossing, found.level.voxel_size)
                                       + found.octree.origin);
         double off = 0; // beyond the farthest face

@@ -38,9 +38,9 @@ TEST_CASE("every point with a normal is in one set of its own voxel, and counts 
     bool own_voxel = true;
     for (Index v = 0; v < b.level.size(); ++v)
         for (Index p = b.level.first_point[v]; p < b.level.first_point[v + 1]; ++p) {
-            const Index set = b.sets.of_point[p];
+            const Index set = b.sets.first[v] + b.sets.of_point[p];
             REQUIRE(set < counted.size());
-            own_voxel &= b.sets.sets[set].voxel == v && set >= b.sets.first[v] && set < b.sets.first[v + 1];
+            own_voxel &= b.sets.sets[set].voxel == v && set < b.sets.first[v + 1];
             ++counted[set];
         }
     CHECK(own_voxel);

@@ -44,13 +44,9 @@ TEST_CASE("strays belong to no set, the surface keeps its points", "[contour]") 
     CHECK(sets.first.back() == sets.sets.size());
     std::vector<Index> counts(sets.sets.size(), 0);
     std::size_t without = 0;
-    for (std::size_t p = 0; p < octree.size(); ++p) {
-        if (sets.of_point[p] == no_index)
-            ++without;
-        else
-            ++counts[sets.of_point[p]];
-    }
+    for (const std::uint8_t number : sets.of_point) without += number == NormalSets::no_set;
     CHECK(without == 5);
+    for (Index s = 0; s < counts.size(); ++s) sets.for_points_of(s, level, [&](Index) { ++counts[s]; });
     for (Index v = 0; v < level.size(); ++v)
         for (Index s = sets.first[v]; s < sets.first[v + 1]; ++s) {
             CHECK(sets.sets[s].voxel == v);

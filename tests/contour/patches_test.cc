@@ -53,10 +53,10 @@ struct Separated {
 };
 
 /// Which points are in one set, whatever its number.
-std::set<std::set<Index>> partition(const NormalSets& sets) {
+std::set<std::set<Index>> partition(const NormalSets& sets, const OctreeLevel& level) {
     std::vector<std::set<Index>> members(sets.sets.size());
-    for (std::size_t i = 0; i < sets.of_point.size(); ++i)
-        if (sets.of_point[i] != no_index) members[sets.of_point[i]].insert(static_cast<Index>(i));
+    for (Index s = 0; s < members.size(); ++s)
+        sets.for_points_of(s, level, [&](Index p) { members[s].insert(p); });
     return {members.begin(), members.end()};
 }
 
@@ -76,9 +76,8 @@ TEST_CASE("the ground on both sides of a wall below a voxel is two patches", "[c
     REQUIRE(fins.after.first_apart.size() == fins.after.sets.size() + 1);
     // Each set is what its points make, and no two sets share one.
     std::vector<std::vector<Index>> points(fins.after.sets.size());
-    for (std::size_t i = 0; i < fins.octree.size(); ++i)
-        if (fins.after.of_point[i] != no_index)
-            points[fins.after.of_point[i]].push_back(static_cast<Index>(i));
+    for (Index s = 0; s < points.size(); ++s)
+        fins.after.for_points_of(s, fins.level, [&](Index p) { points[s].push_back(p); });
     for (Index v = 0; v < fins.level.size(); ++v)
         for (Index s = fins.after.first[v]; s < fins.after.first[v + 1]; ++s) {
             CHECK(fins.after.sets[s].voxel == v);
@@ -111,7 +110,7 @@ TEST_CASE("a gap is a wall of what is around it: turned normals make the same pa
         const PointCloud cloud = evenly_scanned(solid.placed(random_pose(3)), 8, 3);
         const Separated out(cloud), in(turned_inside_out(cloud));
         CHECK(out.counts.split > 0);
-        CHECK(partition(out.after) == partition(in.after));
+        CHECK(partition(out.after, out.level) == partition(in.after, in.level));
         CHECK(out.after.first_apart == in.after.first_apart);
         CHECK(out.after.apart == in.after.apart);
     }
@@ -120,7 +119,7 @@ TEST_CASE("a gap is a wall of what is around it: turned normals make the same pa
 TEST_CASE("thick parts have no walls, and the rim of a plate is not split", "[contour]") {
     const Separated block(evenly_scanned(box({1, 0.9, 0.8}).placed(random_pose(4)), 5, 4));
     CHECK(block.counts.crowded == 0);
-    CHECK(partition(block.before) == partition(block.after));
+    CHECK(partition(block.before, block.level) == partition(block.after, block.level));
     const Separated plate(evenly_scanned(box({1, 0.9, 0.7 * voxel_edge}).placed(random_pose(5)), 2, 5));
     CHECK(plate.counts.crowded > 50);
     CHECK(plate.counts.split == 0);

@@ -27,7 +27,8 @@ Stages::Stages(const PointCloud& cloud, int depth, double cube_extent)
     grid = build_grid_points(level);
     LocalSheets local = group_local_sheets(grid, sets, related, h());
     extend_grid_points(grid, local, level);
-    crossings = label_grid_signs(grid, local, sets, find_crossings(grid, local, sets, related, h()), h());
+    crossings = label_grid_signs(grid, beliefs_of_sheets(local, h()), sets,
+                                 find_crossings(grid, local, sets, related, h()), h());
     pair();
     place();
 }

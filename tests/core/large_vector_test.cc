@@ -1,3 +1,4 @@
+#include "hsdm/core/chunks.hh"
 #include "hsdm/core/large_vector.hh"
 #include "hsdm/types.hh"
 
@@ -45,4 +46,18 @@ TEST_CASE("unwritten vectors keep what they had and hold what is written", "[cor
     CHECK(values == std::vector<Index>{1, 2, 3, 4, 5});
     CHECK(unwritten_vector<std::string>(2) == std::vector<std::string>(2)); // what has a constructor is made
     CHECK(unwritten_vector<double>(0).empty());
+}
+
+TEST_CASE("what many chunks append comes in their order, however unevenly, and then the last", "[core]") {
+    constexpr std::size_t n = 600 * chunks::heavy; // joined in three goes
+    const auto append = [](std::size_t begin, std::size_t end, std::vector<std::size_t>& part) {
+        for (std::size_t i = begin; i < end; ++i) // hardly any at first, so that more come than expected
+            for (std::size_t k = 0; k < (i < n / 2 ? i % 1000 == 0 : 1 + i % 3); ++k) part.push_back(i);
+    };
+    std::vector<std::size_t> expected;
+    append(0, n, expected);
+    CHECK(collected<std::size_t>(n, chunks::heavy, append) == expected);
+    expected.push_back(n);
+    CHECK(collected<std::size_t>(n, chunks::heavy, append, n) == expected);
+    CHECK(collected<std::size_t>(0, chunks::heavy, append, n) == std::vector<std::size_t>{n});
 }

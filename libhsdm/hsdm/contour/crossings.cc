@@ -8,7 +8,9 @@
 #include "hsdm/core/large_vector.hh"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <utility>
 
 namespace hsdm {
 namespace {
@@ -30,12 +32,6 @@ struct EdgeSheet {
     double density() const { return points > 0 ? points_squared / points : 0; }
 };
 
-struct Candidate {
-    Crossing crossing;
-    bool standing;
-    float sureness;
-};
-
 /// What is seen from a grid point: the one sheet that there is, from which side, and the octants that hold
 /// points of it.
 struct SeenFrom {
@@ -43,13 +39,17 @@ struct SeenFrom {
 };
 constexpr std::uint8_t inside_one = 0, outside_one = 1, several = 2; // or none, or one without weight
 
-std::vector<SeenFrom> seen_from_all(const LocalSheets& local, std::size_t grid_points) {
-    std::vector<SeenFrom> seen = large_vector<SeenFrom>(grid_points, {several, 0});
-    for_each_index(grid_points, chunks::usual, [&](Index c) {
+std::vector<SeenFrom> seen_from_all(const GridPoints& grid, const NormalSets& sets,
+                                    const LocalSheets& local) {
+    std::vector<SeenFrom> seen = unwritten_vector<SeenFrom>(grid.size());
+    for_each_index(grid.size(), chunks::usual, [&](Index c) {
+        seen[c] = {several, 0};
         const auto sheets = local.sheets_at(c);
         if (sheets.size() != 1 || !(sheets[0].weight > 0)) return;
         unsigned octants = 0;
-        for (const SheetMember& m : local.members_at(c)) octants |= 1u << m.octant;
+        for (unsigned octant = 0; octant < 8; ++octant)
+            if (const Index v = grid.voxels[c][octant]; v != no_index)
+                octants |= unsigned{sets.first[v] < sets.first[v + 1]} << octant;
         seen[c] = {sheets[0].distance < 0 ? inside_one : outside_one, static_cast<std::uint8_t>(octants)};
     });
     return seen;
@@ -71,15 +71,16 @@ public:
 
     std::size_t dropped_beyond_crease = 0;
 
-    void find(Index grid_point, unsigned axis, std::vector<Candidate>& found) {
+    void find(Index grid_point, unsigned axis, std::vector<Crossing>& found) {
         ends_[0] = grid_point, ends_[1] = grid_.next[grid_point][axis], axis_ = axis;
         if (ends_[1] == no_index || passes_by()
-            || (local_.members_at(ends_[0]).empty() && local_.members_at(ends_[1]).empty()))
+            || (!local_.has_members(ends_[0]) && !local_.has_members(ends_[1])))
             return;
         const VoxelCoord c = grid_.coord(grid_point);
         low_ = Vec3(c[0], c[1], c[2]) * h_;
         join_sheets();
         if (!measure()) return;
+        count_points();
         const std::size_t begin = found.size();
         for (std::size_t i = 0; i < count_; ++i) {
             if (!sheets_[i].crosses) continue;
@@ -87,13 +88,13 @@ public:
             const double off = beyond(i);
             dropped_beyond_crease += off > 0;
             const bool carried = supported(i);
-            found.push_back({crossing(i, carried), off == 0 && (carried || sheets_[i].beside()),
-                             off > 0 ? sureness(off) : 1});
+            found.push_back(crossing(i, carried));
+            found.back().standing = off == 0 && (carried || sheets_[i].beside());
+            found.back().sureness = off > 0 ? sureness(off) : 1;
         }
         std::sort(found.begin() + static_cast<std::ptrdiff_t>(begin), found.end(),
-                  [](const Candidate& a, const Candidate& b) {
-                      return std::pair(a.crossing.t, a.crossing.set)
-                             < std::pair(b.crossing.t, b.crossing.set);
+                  [](const Crossing& a, const Crossing& b) {
+                      return std::pair(a.t, a.set) < std::pair(b.t, b.set);
                   });
     }
 
@@ -130,15 +131,15 @@ private:
 
     /// Local sheets at the two ends are one along the edge if they share a set of a voxel beside it.
     void join_sheets() {
-        const auto low = local_.members_at(ends_[0]), high = local_.members_at(ends_[1]);
         const std::size_t n0 = local_.sheets_at(ends_[0]).size(), n1 = local_.sheets_at(ends_[1]).size();
         for (std::size_t i = 0; i < n0 + n1; ++i) parent_[i] = static_cast<std::uint8_t>(i);
         if (n0 == 1 && n1 == 1 && holds_beside(ends_[0])) {
             parent_[1] = 0;
         } else {
-            for (const SheetMember& a : low) {
+            gather_members();
+            for (const SheetMember& a : members_[0]) {
                 if (!beside(a, 0)) continue;
-                for (const SheetMember& b : high)
+                for (const SheetMember& b : members_[1])
                     if (b.set == a.set) {
                         const std::size_t ra = root(a.sheet), rb = root(n0 + b.sheet);
                         parent_[std::max(ra, rb)] = static_cast<std::uint8_t>(std::min(ra, rb));
@@ -159,18 +160,35 @@ private:
             sheet.weight[end] += part.weight;
             sheet.distance[end] += part.distance;
             sheet.normal += part.normal;
-            sheet.points += part.points;
-            sheet.points_squared += part.points_squared;
         }
         offset_[0] = 0, offset_[1] = n0;
-        for (const SheetMember& a : low)
-            if (beside(a, 0)) sheets_[number_[a.sheet]].held[around(a)] += sets_.sets[a.set].count;
+    }
+
+    /// Most edges that are not crossed can do without.
+    void gather_members() {
+        for (unsigned end : {0u, 1u})
+            if (std::exchange(members_of_[end], ends_[end]) != ends_[end])
+                local_.gather(grid_, sets_, ends_[end], members_[end]);
+    }
+
+    void count_points() {
+        gather_members();
+        for (unsigned end : {0u, 1u})
+            for (const SheetMember& m : members_[end]) {
+                EdgeSheet& sheet = sheets_[number_[offset_[end] + m.sheet]];
+                const double points = sets_.sets[m.set].count;
+                sheet.points += points;
+                sheet.points_squared += points * points;
+                if (end == 0 && beside(m, 0)) sheet.held[around(m)] += points;
+            }
     }
 
     bool measure() {
         for (std::size_t i = 0; i < count_; ++i) {
             measure(sheets_[i]);
-            if (sheets_[i].crosses && sheets_[i].bent) cross_at_crease(i);
+            if (!sheets_[i].crosses || !sheets_[i].bent) continue;
+            gather_members();
+            cross_at_crease(i);
         }
         relations_for_ = most;
         return std::any_of(sheets_.begin(), sheets_.begin() + static_cast<std::ptrdiff_t>(count_),
@@ -234,7 +252,7 @@ private:
     template <class F>
     void for_each_member(std::size_t i, F&& f) const {
         for (unsigned end : {0u, 1u})
-            for (const SheetMember& m : local_.members_at(ends_[end]))
+            for (const SheetMember& m : members_[end])
                 if (number_[offset_[end] + m.sheet] == i) f(m, end);
     }
 
@@ -244,7 +262,7 @@ private:
         unsigned convex = 0, concave = 0, points = 0; // of the lesser sets that vote
         bool any_apart = false;
         for (unsigned end : {0u, 1u}) {
-            const auto members = local_.members_at(ends_[end]);
+            const SheetMembers& members = members_[end];
             for (const SheetMember& a : members) {
                 if (number_[offset_[end] + a.sheet] != j) continue;
                 for (const SheetMember& b : members) {
@@ -396,6 +414,8 @@ private:
     const CrossingOptions& options_;
 
     Index ends_[2] = {0, 0};
+    Index members_of_[2] = {no_index, no_index};
+    SheetMembers members_[2]; // of those grid points
     unsigned axis_ = 0;
     Vec3 low_;
     std::size_t offset_[2] = {0, 0};
@@ -410,39 +430,26 @@ private:
 
 } // namespace
 
-CrossingCandidates find_crossings(const GridPoints& grid, const LocalSheets& local, const NormalSets& sets,
-                                  const RelationTest& related, double voxel_size,
-                                  const CrossingOptions& options) {
-    CrossingCandidates result;
-    const std::size_t n = grid.size();
-    assign_large(result.crossings.first, 3 * n + 1, 0);
-    const std::vector<SeenFrom> seen = seen_from_all(local, n);
-    const std::size_t chunks = chunk_count(n, chunks::slow);
-    std::vector<std::vector<Crossing>> found(chunks);
-    std::vector<std::vector<std::uint8_t>> standing(chunks);
-    std::vector<std::vector<float>> sureness(chunks);
-    std::vector<std::size_t> dropped(chunks);
-    for_chunks(n, chunks::slow, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
+Crossings find_crossings(const GridPoints& grid, const LocalSheets& local, const NormalSets& sets,
+                         const RelationTest& related, double voxel_size, const CrossingOptions& options) {
+    Crossings result;
+    const std::vector<SeenFrom> seen = seen_from_all(grid, sets, local);
+    resize_unwritten(result.first, 3 * grid.size() + 1);
+    result.first[0] = 0;
+    std::atomic<std::size_t> dropped = 0;
+    const auto find = [&](std::size_t begin, std::size_t end, std::vector<Crossing>& found) {
         EdgeCrossings edge(grid, local, seen, sets, related, voxel_size, options);
-        std::vector<Candidate> on_edge;
         for (std::size_t c = begin; c < end; ++c)
             for (unsigned axis = 0; axis < 3; ++axis) {
-                on_edge.clear();
-                edge.find(static_cast<Index>(c), axis, on_edge);
-                result.crossings.first[3 * c + axis + 1] = static_cast<Index>(on_edge.size());
-                for (const Candidate& candidate : on_edge) {
-                    found[chunk].push_back(candidate.crossing);
-                    standing[chunk].push_back(candidate.standing);
-                    sureness[chunk].push_back(candidate.sureness);
-                }
+                const std::size_t before = found.size();
+                edge.find(static_cast<Index>(c), axis, found);
+                result.first[3 * c + axis + 1] = static_cast<Index>(found.size() - before);
             }
-        dropped[chunk] = edge.dropped_beyond_crease;
-    });
-    result.crossings.crossings = joined(found);
-    result.standing = joined(standing);
-    result.sureness = joined(sureness);
-    counts_to_first(result.crossings.first);
-    for (std::size_t d : dropped) result.crossings.dropped_beyond_crease += d;
+        dropped += edge.dropped_beyond_crease;
+    };
+    result.crossings = collected<Crossing>(grid.size(), chunks::slow, find);
+    counts_to_first(result.first);
+    result.dropped_beyond_crease = dropped;
     return result;
 }
 

@@ -24,6 +24,12 @@ struct Crossing {
     bool leaving;   ///< the lower grid point is inside, the upper one outside
     bool supported; ///< do the data carry the sheet into all four voxels beside the edge, slivers apart?
     bool by_crease = false; ///< is it on one face of a blunt crease near by?
+    /// Of a candidate: is it clipped by no crease partner, and either carried by the data or has the sheet
+    /// points beside the edge?
+    bool standing = true;
+    /// Of a candidate, from 0 to 1: that it does not stand; less than 1 where it is clipped by less than
+    /// sheets::surface_error().
+    float sureness = 1;
 };
 
 /// The crossings of every grid edge: those of edge e are crossings[first[e]] .. crossings[first[e + 1]], by
@@ -44,19 +50,9 @@ struct Crossings {
     }
 };
 
-/// Every crossing that some sheet has, and which of them are standing: not clipped by a crease partner, and
-/// either carried by the data or with points of the sheet beside the edge.
-struct CrossingCandidates {
-    Crossings crossings;
-    std::vector<std::uint8_t> standing; ///< per crossing
-    /// Per crossing, from 0 to 1: that it does not stand; less than 1 where it is clipped by less than
-    /// sheets::surface_error().
-    std::vector<float> sureness;
-};
-
-CrossingCandidates find_crossings(const GridPoints& grid, const LocalSheets& sheets, const NormalSets& sets,
-                                  const RelationTest& related, double voxel_size,
-                                  const CrossingOptions& options = {});
+/// Every crossing that some sheet has, as candidates. O(grid points), parallel.
+Crossings find_crossings(const GridPoints& grid, const LocalSheets& sheets, const NormalSets& sets,
+                         const RelationTest& related, double voxel_size, const CrossingOptions& options = {});
 
 /// Where a crossing lies, relative to the octree's origin.
 Vec3 crossing_position(const GridPoints& grid, const Crossing& crossing, double voxel_size);

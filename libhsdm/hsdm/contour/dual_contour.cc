@@ -208,18 +208,20 @@ private:
 
 /// The facets round all crossed grid edges, then the strips at rims and the caps of dual vertices.
 PolygonMesh facets_of(const DualMesh& dual, const Midpoints& midpoints, const PlacedVertices& vertices) {
-    const Crossings& crossings = dual.crossings;
-    const std::size_t edges = crossings.first.size() - 1;
-    const std::size_t chunks = chunk_count(edges, chunks::quick);
+    const std::vector<Crossing>& crossings = dual.crossings.crossings;
+    const std::size_t chunks = chunk_count(crossings.size(), chunks::usual);
     std::vector<PolygonMesh> parts(2 * chunks); // facets, then strips
-    for_chunks(edges, chunks::quick, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
+    const auto goes_on = [&](std::size_t x) {   // of the edge of the crossing before?
+        return x > 0 && x < crossings.size() && crossings[x].edge == crossings[x - 1].edge;
+    };
+    for_chunks(crossings.size(), chunks::usual, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
         FacetBuilder builder(dual, midpoints, vertices, parts[chunk]);
-        for (std::size_t e = begin; e < end; ++e) {
-            const Index first = crossings.first[e], next = crossings.first[e + 1];
-            if (first < next) builder.add_facets(first, next); // most edges are not crossed
+        for (std::size_t first = begin, next; first < end; first = next) {
+            for (next = first + 1; goes_on(next);) ++next;
+            if (!goes_on(first)) builder.add_facets(static_cast<Index>(first), static_cast<Index>(next));
         }
         FacetBuilder strip_builder(dual, midpoints, vertices, parts[chunks + chunk]);
-        for (Index x = crossings.first[begin]; x < crossings.first[end]; ++x) strip_builder.add_strips(x);
+        for (auto x = static_cast<Index>(begin); x < end; ++x) strip_builder.add_strips(x);
     });
     PolygonMesh mesh;
     append_facets(mesh, parts);
@@ -285,13 +287,6 @@ void count_intersections(DualContour& result) {
         result.intersections.first = result.mesh.positions[result.mesh.facet(found.facet_pairs[0][0])[0]];
 }
 
-/// What places of crossings are known by once dual vertices are placed. Frees what links grid points.
-GridPoints codes_alone(GridPoints grid) {
-    GridPoints result;
-    result.codes = std::move(grid.codes);
-    return result;
-}
-
 /// Builds the facets; returns the edges to collapse to corners. Grid points, crossings and dual vertices, the
 /// largest part of the memory, are freed at the end.
 std::vector<EdgeCollapse> build_facets(const Octree& octree, const OctreeLevel& level, const NormalSets& sets,
@@ -305,8 +300,10 @@ std::vector<EdgeCollapse> build_facets(const Octree& octree, const OctreeLevel& 
     dual.crossings = [&] {
         LocalSheets local = group_local_sheets(dual.grid, sets, related, h);
         extend_grid_points(dual.grid, local, level);
-        return label_grid_signs(dual.grid, local, sets,
-                                find_crossings(dual.grid, local, sets, related, h, options.crossing), h,
+        Crossings candidates = find_crossings(dual.grid, local, sets, related, h, options.crossing);
+        std::vector<double> beliefs = beliefs_of_sheets(local, h);
+        local = LocalSheets();
+        return label_grid_signs(dual.grid, std::move(beliefs), sets, std::move(candidates), h,
                                 options.all_round);
     }();
     const auto pair = [&] { dual.links = pair_crossings(dual.grid, dual.crossings, sets, related); };
@@ -325,9 +322,11 @@ std::vector<EdgeCollapse> build_facets(const Octree& octree, const OctreeLevel& 
     cut_into_vertices();
     result.webs_opened = open_all_webs(sets, h, dual);
     if (result.webs_opened > 0) cut_into_vertices(); // what partners changed lead over
+    release(dual.grid.next);
     PlacedVertices vertices = place_vertices(dual, sets, related);
+    dual.grid = GridPoints(); // crossings are found by the voxels of vertices from here on
+    release(dual.crossings.first);
     extend_borders(dual, sets, vertices);
-    dual.grid = codes_alone(std::move(dual.grid));
     relax_vertices(octree, level, dual, options.relax, vertices);
     draw_in_rims(octree, level, sets, dual, vertices);
     separate_sides(dual, vertices.positions);

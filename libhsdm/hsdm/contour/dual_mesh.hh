@@ -6,17 +6,17 @@
 namespace hsdm {
 
 struct DualMesh {
-    GridPoints grid;
-    Crossings crossings; ///< each is dual to a facet
+    GridPoints grid;     ///< until vertices are placed
+    Crossings crossings; ///< each is dual to a facet; by edge until vertices are placed
     Links links;         ///< per side of a facet, its twin
     DualVertices duals;  ///< the vertices, each with the facet corners round it in order
     double voxel_size = 0;
 
     /// Where the crossing lies that a facet is dual to, relative to the octree's origin.
     Vec3 crossing_position_of(FacetCorner corner) const {
-        return crossing_position(grid, crossings.of(corner), voxel_size);
+        return crossing_position_of(corner, duals.from(corner));
     }
-    /// The same, given the corner's dual vertex: what is found by the voxel needs no look at the grid.
+    /// The same, given the corner's dual vertex.
     Vec3 crossing_position_of(FacetCorner corner, Index dual) const {
         const Crossing& crossing = crossings.of(corner);
         const unsigned axis = crossing.edge % 3, octant = corner.octant(axis);

@@ -354,10 +354,11 @@ DualVertices build_dual_vertices(const GridPoints& grid, const Crossings& crossi
     reserve_large(duals.open, vertices);
     std::vector<std::uint8_t> shared;
     reserve_large(shared, vertices);
-    for (const ChunkDualVertices& chunk : chunks) {
+    for (ChunkDualVertices& chunk : chunks) {
         Interruption::poll();
         append(chunk, duals);
         shared.insert(shared.end(), chunk.shared.begin(), chunk.shared.end());
+        chunk = {}; // frees it before more is needed
     }
     number_sides(crossings, shared, duals);
     return duals;

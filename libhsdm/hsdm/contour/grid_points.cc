@@ -66,13 +66,18 @@ void for_blocks(const std::vector<MortonCode>& codes, Each each) {
     });
 }
 
+/// Room for those that add_grid_points adds to so many, which are few: else all would be copied.
+std::size_t with_added(std::size_t built) {
+    return built + built / 16;
+}
+
 /// A block of grid points, and a bit for each of those that there are.
 struct UsedPoints {
     MortonCode block;
     std::uint64_t used;
 };
 
-/// The blocks that have any, ascending; some several times.
+/// The blocks that have any, ascending.
 std::vector<UsedPoints> used_points(const OctreeLevel& level) {
     std::vector<std::vector<UsedPoints>> parts(chunk_count(level.size(), chunks::usual));
     for_blocks(level.codes, [&](MortonCode block, std::size_t begin, std::size_t end, std::size_t chunk) {
@@ -86,27 +91,33 @@ std::vector<UsedPoints> used_points(const OctreeLevel& level) {
     });
     std::vector<UsedPoints> points = joined(parts);
     parallel_sort(points, [](const UsedPoints& a, const UsedPoints& b) { return a.block < b.block; });
+    std::size_t kept = 0;
+    for_each_in_order(points.size(), [&](std::size_t i) {
+        if (kept > 0 && points[kept - 1].block == points[i].block)
+            points[kept - 1].used |= points[i].used;
+        else
+            points[kept++] = points[i];
+    });
+    points.resize(kept);
     return points;
 }
 
 /// Every corner of every voxel, ascending, each once.
 std::vector<MortonCode> grid_point_codes(const OctreeLevel& level) {
     const std::vector<UsedPoints> points = used_points(level);
+    std::size_t count = 0;
+    for (const UsedPoints& of_block : points) count += MortonIndex::count_bits(of_block.used);
     std::vector<MortonCode> codes;
-    reserve_large(codes, 2 * level.size());
-    for_each_in_order(points.size(), [&](std::size_t i) {
-        if (i > 0 && points[i].block == points[i - 1].block) return; // done with the first one
-        std::uint64_t used = 0;
-        for (std::size_t k = i; k < points.size() && points[k].block == points[i].block; ++k)
-            used |= points[k].used;
-        for (; used != 0; used &= used - 1)
-            push_large(codes, points[i].block * per_block + static_cast<unsigned>(std::countr_zero(used)));
-    });
+    reserve_large(codes, with_added(count));
+    for (const auto& [block, used] : points)
+        for (std::uint64_t left = used; left != 0; left &= left - 1)
+            codes.push_back(block * per_block + static_cast<unsigned>(std::countr_zero(left)));
     return codes;
 }
 
 /// Enters each voxel at its eight corners.
 void connect_voxels(const OctreeLevel& level, GridPoints& grid) {
+    reserve_large(grid.voxels, with_added(grid.size()));
     resize_large(grid.voxels, grid.size(), no_voxels);
     const MortonIndex& index = grid.parts.front().index;
     for_blocks(level.codes, [&](MortonCode block, std::size_t begin, std::size_t end, std::size_t) {
@@ -127,6 +138,7 @@ void connect_grid_point(GridPoints& grid, std::size_t i) {
 
 /// Enters for each grid point the next ones: all are of one part, in the same block or the next up the axis.
 void connect_grid_points(GridPoints& grid) {
+    reserve_large(grid.next, with_added(grid.size()));
     resize_unwritten(grid.next, grid.size());
     const MortonIndex& index = grid.parts.front().index;
     for_blocks(grid.codes, [&](MortonCode block, std::size_t begin, std::size_t end, std::size_t) {

@@ -26,15 +26,16 @@ constexpr Side inner_side = 0, outer_side = 1, unknown = 2; // the labels of che
 /// programming along the edge).
 class EdgeChoice {
 public:
-    explicit EdgeChoice(const CrossingCandidates& candidates)
-        : list_(candidates.crossings), standing_(candidates.standing), sureness_(candidates.sureness) {}
+    explicit EdgeChoice(const Crossings& candidates) : list_(candidates) {}
 
     static constexpr std::size_t most = 128; // sheets of an edge
 
     /// Cost of dropping a standing crossing.
     double weight(Index x) const { return list_.crossings[x].supported ? 1 : signs::cost_of_weak; }
-    double cost_of_taking(Index x) const { return standing_[x] ? 0 : signs::cost_of_return * sureness_[x]; }
-    double cost_of_leaving(Index x) const { return standing_[x] ? weight(x) : 0; }
+    double cost_of_taking(Index x) const {
+        return list_.crossings[x].standing ? 0 : signs::cost_of_return * list_.crossings[x].sureness;
+    }
+    double cost_of_leaving(Index x) const { return list_.crossings[x].standing ? weight(x) : 0; }
     Side side_before(Index x) const { return list_.crossings[x].leaving ? inner_side : outer_side; }
 
     double cost(Index edge, Side low, Side high, double invention) const {
@@ -76,34 +77,46 @@ private:
     }
 
     const Crossings& list_;
-    const std::vector<std::uint8_t>& standing_;
-    const std::vector<float>& sureness_;
 };
+
+/// Inserts invented crossings; both lists ascend by edge, and an invented one is the last of its edge.
+void insert(const std::vector<Crossing>& invented, std::vector<Crossing>& crossings) {
+    auto left = crossings.size();
+    resize_unwritten(crossings, left + invented.size());
+    const auto begin = crossings.begin();
+    const auto at = [&](std::size_t i) { return begin + static_cast<std::ptrdiff_t>(i); };
+    for (std::size_t i = invented.size(); i-- > 0;) { // from the end, so that nothing is in the way
+        const auto later = std::upper_bound(begin, at(left), invented[i].edge,
+                                            [](Index edge, const Crossing& x) { return edge < x.edge; });
+        std::move_backward(later, at(left), at(left + i + 1));
+        left = static_cast<std::size_t>(later - begin);
+        crossings[left + i] = invented[i];
+    }
+}
 
 /// Chooses the sides of the grid points, then the crossings.
 class SignLabelling {
 public:
-    SignLabelling(const GridPoints& grid, const LocalSheets& sheets, const NormalSets& sets,
-                  const CrossingCandidates& candidates, double voxel_size, bool all_round)
+    SignLabelling(const GridPoints& grid, std::vector<double> beliefs, const NormalSets& sets,
+                  Crossings&& candidates, double voxel_size, bool all_round)
         : grid_(grid),
-          sheets_(sheets),
           sets_(sets),
-          list_(candidates.crossings),
-          standing_(candidates.standing),
-          choice_(candidates),
+          list_(std::move(candidates)),
+          choice_(list_),
           h_(voxel_size),
           cost_of_border_(all_round ? 2 * signs::cost_of_belief : signs::cost_of_belief),
-          side_(grid.size(), unknown),
-          belief_(grid.size(), 0),
+          side_(large_vector<Side>(grid.size(), unknown)),
+          belief_(std::move(beliefs)),
           below_(grid_points_below(grid)) {}
 
     Crossings run() {
-        set_beliefs();
         vote(true);
         // The last ring settles what no vote reached.
         for (int ring = 0; ring < repeats::few; ++ring) vote(false, ring + 1 < repeats::few);
         settle_doubtful();
-        return chosen();
+        release(belief_);
+        choose_all();
+        return std::move(list_);
     }
 
 private:
@@ -112,7 +125,7 @@ private:
         const Index n = list_.first[edge + 1] - list_.first[edge];
         for (Index k = 0; k < n; ++k) {
             const Index x = upper ? list_.first[edge + 1] - 1 - k : list_.first[edge] + k;
-            if (standing_[x]) return x;
+            if (list_.crossings[x].standing) return x;
         }
         return no_index;
     }
@@ -124,21 +137,6 @@ private:
         if (x == no_index) return carried_only || other == unknown ? 0 : other == outer_side ? 1 : -1;
         if (carried_only && !list_.crossings[x].supported) return 0;
         return list_.crossings[x].leaving == upper ? choice_.weight(x) : -choice_.weight(x);
-    }
-
-    /// belief_: the vote of the sheets around a grid point, without crossings: the sum of its distances to
-    /// them, weighted by nearness, over the sum of their absolute values; in units of cost_of_belief, 1 if it
-    /// is outside all, -1 inside all. 0 if a sheet passes nearer than its error.
-    void set_beliefs() {
-        for_each_index(grid_.size(), chunks::usual, [&](Index c) {
-            double sum = 0, size = 0;
-            for (const LocalSheet& sheet : sheets_.sheets_at(c)) {
-                if (std::abs(sheet.distance) < sheets::surface_error() * h_ * sheet.weight) return;
-                sum += sheet.distance;
-                size += std::abs(sheet.distance);
-            }
-            if (size > 0) belief_[c] = signs::cost_of_belief * sum / size;
-        });
     }
 
     /// That of the first neighbour that has one, so that it turns with the normals; outside if none has.
@@ -177,7 +175,12 @@ private:
         for (unsigned a : {(edge + 1) % 3, (edge + 2) % 3})
             for (Index end : {lower, upper})
                 if (grid_.next[end][a] == no_index || below_[end][a] == no_index) return true;
-        return sheets_.members_at(lower).empty() && sheets_.members_at(upper).empty();
+        return !sees_a_set(lower) && !sees_a_set(upper);
+    }
+    bool sees_a_set(Index grid_point) const {
+        return std::ranges::any_of(grid_.voxels[grid_point], [&](Index voxel) {
+            return voxel != no_index && !sets_.of_voxel(voxel).empty();
+        });
     }
 
     double cost_of_invention(Index edge) const {
@@ -251,41 +254,57 @@ private:
         for (std::size_t i = 0; i < points.size(); ++i) side_[points[i]] = sides[i];
     }
 
-    /// Appends the crossings chosen for an edge; `changes` counts those that differ from the standing ones.
-    void choose(Index edge, std::vector<Crossing>& out, std::size_t& changes) const {
-        const Index begin = list_.first[edge], end = list_.first[edge + 1];
+    /// Of the crossings of a chunk's edges, those that go on are moved to its front.
+    struct Chosen {
+        Index begin, end;               ///< of those that stay
+        std::vector<Crossing> invented; ///< by edge
+        std::size_t changes = 0;        ///< those dropped, restored or invented
+    };
+
+    /// Chooses an edge's crossings; returns how many, invented ones included.
+    std::uint8_t choose(Index edge, Chosen& chosen) {
+        const Index begin = list_.first[edge], end = list_.first[edge + 1], before = chosen.end;
         const Index upper = grid_.next[edge / 3][edge % 3];
+        const auto keep = [&](Index x) { list_.crossings[chosen.end++] = list_.crossings[x]; };
         if (upper == no_index) {
             for (Index x = begin; x < end; ++x)
-                if (standing_[x]) out.push_back(list_.crossings[x]);
-            return;
+                if (list_.crossings[x].standing) keep(x);
+            return static_cast<std::uint8_t>(chosen.end - before);
         }
         const Side low = side_[edge / 3], high = side_[upper];
-        if (begin == end && low == high) return;                             // most edges
+        if (begin == end && low == high) return 0;                           // most edges
         const double invention = begin == end ? 0 : cost_of_invention(edge); // without any it changes nothing
         const Side reached = choice_.choose(edge, low, high, invention, [&](Index x, bool taken) {
-            if (taken) out.push_back(list_.crossings[x]);
-            changes += taken != (standing_[x] != 0);
+            chosen.changes += taken != list_.crossings[x].standing;
+            if (taken) keep(x);
         });
-        if (reached != high && invent(edge, reached == inner_side, out)) ++changes;
+        const auto kept = static_cast<std::uint8_t>(chosen.end - before);
+        if (reached == high) return kept;
+        const double least = kept > 0 ? list_.crossings[chosen.end - 1].t : 0;
+        if (!invent(edge, reached == inner_side, least, chosen.invented)) return kept;
+        ++chosen.changes;
+        return kept + 1;
     }
 
     /// Among the sets seen from an edge's ends the one nearest to its middle, with preference for those whose
     /// normals agree with the crossing's direction; no_index if neither end sees a set.
     Index set_near(Index edge, bool leaving, const Vec3& middle) const {
         std::tuple<bool, double, Index> best{true, impossible, no_index};
-        for (Index end : {edge / 3, grid_.next[edge / 3][edge % 3]})
-            for (const SheetMember& m : sheets_.members_at(end)) {
+        SheetMembers members;
+        for (Index end : {edge / 3, grid_.next[edge / 3][edge % 3]}) {
+            members.gather(grid_.voxels[end], sets_);
+            for (const SheetMember& m : members) {
                 const NormalSet& s = sets_.sets[m.set];
                 best = std::min(
                     best, {(s.normal[edge % 3] > 0) != leaving, (s.centroid - middle).sqrnorm(), m.set});
             }
+        }
         return std::get<2>(best);
     }
 
-    /// Invents a crossing: where the plane of the nearest set crosses the edge, clamped to the edge. False if
-    /// there is no set.
-    bool invent(Index edge, bool leaving, std::vector<Crossing>& out) const {
+    /// Invents a crossing: where the plane of the nearest set crosses the edge, clamped to what of it is
+    /// beyond `least`. False if there is no set.
+    bool invent(Index edge, bool leaving, double least, std::vector<Crossing>& out) const {
         const unsigned axis = edge % 3;
         const VoxelCoord c = grid_.coord(edge / 3);
         Vec3 middle = Vec3(c[0], c[1], c[2]) * h_;
@@ -301,37 +320,40 @@ private:
             crossing.normal = Vec3(0, 0, 0);
             crossing.normal[axis] = leaving ? 1 : -1;
         }
-        crossing.t = std::clamp(crossing.t, signs::end_gap, 1 - signs::end_gap);
-        if (!out.empty() && out.back().edge == edge) crossing.t = std::max(crossing.t, out.back().t);
+        crossing.t = std::max(std::clamp(crossing.t, signs::end_gap, 1 - signs::end_gap), least);
         out.push_back(crossing);
         return true;
     }
 
-    Crossings chosen() const {
-        Crossings result;
-        result.dropped_beyond_crease = list_.dropped_beyond_crease;
-        assign_large(result.first, 3 * grid_.size() + 1, 0);
-        std::vector<std::vector<Crossing>> parts(chunk_count(grid_.size(), chunks::usual));
-        std::vector<std::size_t> changes(parts.size());
+    /// Leaves the crossings chosen, in place: most candidates are.
+    void choose_all() {
+        std::vector<Chosen> chosen(chunk_count(grid_.size(), chunks::usual));
+        std::vector<std::uint8_t> count = unwritten_vector<std::uint8_t>(3 * grid_.size());
         for_chunks(grid_.size(), chunks::usual, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
-            for (std::size_t edge = 3 * begin; edge < 3 * end; ++edge) {
-                const std::size_t before = parts[chunk].size();
-                choose(static_cast<Index>(edge), parts[chunk], changes[chunk]);
-                result.first[edge + 1] = static_cast<Index>(parts[chunk].size() - before);
-            }
+            chosen[chunk].begin = chosen[chunk].end = list_.first[3 * begin];
+            for (auto edge = static_cast<Index>(3 * begin); edge < 3 * end; ++edge)
+                count[edge] = choose(edge, chosen[chunk]);
         });
-        result.crossings = joined(parts);
-        counts_to_first(result.first);
-        for (std::size_t n : changes) result.settled += n;
-        return result;
+        for_each_index(count.size(), chunks::light, [&](Index edge) { list_.first[edge + 1] = count[edge]; });
+        counts_to_first(list_.first);
+        std::vector<Crossing> invented;
+        Index kept = 0;
+        for_each_in_order(chosen.size(), [&](std::size_t chunk) {
+            const Chosen& of = chosen[chunk];
+            const auto all = list_.crossings.begin();
+            if (of.begin != kept) std::copy(all + of.begin, all + of.end, all + kept);
+            kept += of.end - of.begin;
+            invented.insert(invented.end(), of.invented.begin(), of.invented.end());
+            list_.settled += of.changes;
+        });
+        list_.crossings.resize(kept);
+        insert(invented, list_.crossings);
     }
 
     const GridPoints& grid_;
-    const LocalSheets& sheets_;
     const NormalSets& sets_;
-    const Crossings& list_;
-    const std::vector<std::uint8_t>& standing_;
-    EdgeChoice choice_;
+    Crossings list_;
+    EdgeChoice choice_; // of `list_`
     double h_, cost_of_border_;
     std::vector<Side> side_;
     std::vector<double> belief_;
@@ -340,9 +362,24 @@ private:
 
 } // namespace
 
-Crossings label_grid_signs(const GridPoints& grid, const LocalSheets& sheets, const NormalSets& sets,
-                           const CrossingCandidates& candidates, double voxel_size, bool all_round) {
-    return SignLabelling(grid, sheets, sets, candidates, voxel_size, all_round).run();
+std::vector<double> beliefs_of_sheets(const LocalSheets& sheets, double voxel_size) {
+    std::vector<double> beliefs = unwritten_vector<double>(sheets.first_sheet.size() - 1);
+    for_each_index(beliefs.size(), chunks::usual, [&](Index c) {
+        double sum = 0, size = 0;
+        beliefs[c] = 0;
+        for (const LocalSheet& sheet : sheets.sheets_at(c)) {
+            if (std::abs(sheet.distance) < sheets::surface_error() * voxel_size * sheet.weight) return;
+            sum += sheet.distance;
+            size += std::abs(sheet.distance);
+        }
+        if (size > 0) beliefs[c] = signs::cost_of_belief * sum / size;
+    });
+    return beliefs;
+}
+
+Crossings label_grid_signs(const GridPoints& grid, std::vector<double> beliefs, const NormalSets& sets,
+                           Crossings candidates, double voxel_size, bool all_round) {
+    return SignLabelling(grid, std::move(beliefs), sets, std::move(candidates), voxel_size, all_round).run();
 }
 
 } // namespace hsdm

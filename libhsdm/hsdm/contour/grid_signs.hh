@@ -12,7 +12,12 @@ namespace hsdm {
 /// solid as enter it, and no side is left open but where the grid ends. With
 /// `all_round` the data are known to go round the whole solid: a border costs as much as what would close it.
 /// O(grid points), parallel.
-Crossings label_grid_signs(const GridPoints& grid, const LocalSheets& sheets, const NormalSets& sets,
-                           const CrossingCandidates& candidates, double voxel_size, bool all_round = false);
+Crossings label_grid_signs(const GridPoints& grid, std::vector<double> beliefs, const NormalSets& sets,
+                           Crossings candidates, double voxel_size, bool all_round = false);
+
+/// What the sheets round a grid point say of its side, without crossings: the sum of its distances to them,
+/// weighted by nearness, over the sum of their absolute values; in units of signs::cost_of_belief, 1 if it is
+/// outside all, -1 inside all. 0 if a sheet passes nearer than its error.
+std::vector<double> beliefs_of_sheets(const LocalSheets& sheets, double voxel_size);
 
 } // namespace hsdm

@@ -57,9 +57,7 @@ Ring ring_of(const DualMesh& dual, ChainVertices chain) {
     sort_unique(crossings); // a corner where the chain is cut belongs to two vertices
     Ring ring;
     const auto n = static_cast<double>(crossings.size());
-    const auto position = [&](Index x) {
-        return crossing_position(dual.grid, dual.crossings.crossings[x], dual.voxel_size);
-    };
+    const auto position = [&](Index x) { return dual.crossing_position_of({x, 0}); };
     for (const Index x : crossings) ring.middle += position(x) / n;
     for (const Index x : crossings)
         ring.within += (dual.crossings.crossings[x].normal | (ring.middle - position(x))) / n;

@@ -16,67 +16,58 @@ namespace {
 
 /// The sets around one grid point and their sheets, on the stack.
 struct SheetsAtPoint {
-    static constexpr std::size_t most = 64; // eight voxels of at most eight sets
-    std::array<SheetMember, most> members;
+    static constexpr std::size_t most = SheetMembers::most;
+    SheetMembers members;
     std::array<LocalSheet, most> sheets;
-    std::size_t member_count = 0, sheet_count = 0;
-
-    void gather(const std::array<Index, 8>& voxels, const NormalSets& sets) {
-        member_count = 0;
-        for (std::uint8_t octant = 0; octant < 8; ++octant)
-            if (voxels[octant] != no_index)
-                for (Index s = sets.first[voxels[octant]]; s < sets.first[voxels[octant] + 1]; ++s)
-                    members[member_count++] = {s, octant, 0};
-    }
+    std::size_t sheet_count = 0;
 
     /// Connected components of the smooth relation, numbered by their first member.
     void connect(const NormalSets& sets, const RelationTest& related) {
         sheet_count = label_components(
-            member_count, [&](std::size_t i) -> std::uint8_t& { return members[i].sheet; },
+            members.count, [&](std::size_t i) -> std::uint8_t& { return members.all[i].sheet; },
             [&](std::size_t i, std::size_t j) {
-                return related.smooth(sets.sets[members[i].set], sets.sets[members[j].set]);
+                return related.smooth(sets.sets[members.all[i].set], sets.sets[members.all[j].set]);
             });
     }
 
+    void copy_sheets_of_members(std::span<std::uint8_t> to) const {
+        std::ranges::transform(members, to.begin(), &SheetMember::sheet);
+    }
+
     /// How many sheets members with known sheets belong to.
-    static Index count_sheets(std::span<const SheetMember> known) {
+    static Index count_sheets(std::span<const std::uint8_t> known) {
         std::uint64_t seen = 0; // a bit for each, of 64 at most
         Index count = 0;
-        for (const SheetMember& m : known) {
-            const std::uint64_t bit = std::uint64_t{1} << m.sheet;
+        for (const std::uint8_t sheet : known) {
+            const std::uint64_t bit = std::uint64_t{1} << sheet;
             count += (seen & bit) == 0;
             seen |= bit;
         }
         return count;
     }
 
-    /// Takes members with known sheets; renumbers the sheets without gaps, in order of their first member.
-    void take(std::span<const SheetMember> known) {
+    /// Renumbers the sheets of members without gaps, in order of their first member.
+    void renumber() {
         std::array<std::uint8_t, most> number;
         number.fill(0xff);
-        member_count = known.size();
         sheet_count = 0;
-        for (std::size_t i = 0; i < member_count; ++i) {
-            members[i] = known[i];
-            std::uint8_t& n = number[known[i].sheet];
+        for (std::size_t i = 0; i < members.count; ++i) {
+            std::uint8_t& n = number[members.all[i].sheet];
             if (n == 0xff) n = static_cast<std::uint8_t>(sheet_count++);
-            members[i].sheet = n;
+            members.all[i].sheet = n;
         }
     }
 
     void measure(const Vec3& position, const NormalSets& sets, double voxel_size) {
         for (std::size_t k = 0; k < sheet_count; ++k) sheets[k] = {};
-        for (std::size_t i = 0; i < member_count; ++i) {
-            const NormalSet& set = sets.sets[members[i].set];
+        for (const SheetMember& member : members) {
+            const NormalSet& set = sets.sets[member.set];
             const Vec3 d = position - set.centroid;
-            LocalSheet& sheet = sheets[members[i].sheet];
+            LocalSheet& sheet = sheets[member.sheet];
             const double weight = sheet_weight(set, d, voxel_size);
             sheet.weight += weight;
             sheet.distance += weight * (set.normal | d);
             sheet.normal += weight * set.normal;
-            const double points = set.count;
-            sheet.points += points;
-            sheet.points_squared += points * points;
         }
         for (std::size_t k = 0; k < sheet_count; ++k)
             if (is_bent(sheets[k].normal, sheets[k].weight))
@@ -89,15 +80,15 @@ struct SheetsAtPoint {
         std::array<CreaseSample, most> samples;
         std::array<std::uint8_t, most> face;
         std::size_t n = 0;
-        for (std::size_t i = 0; i < member_count; ++i)
-            if (members[i].sheet == k) samples[n++] = crease_sample(sets.sets[members[i].set]);
+        for (const SheetMember& m : members)
+            if (m.sheet == k) samples[n++] = crease_sample(sets.sets[m.set]);
         BluntCrease crease;
         if (!find_blunt_crease({samples.data(), n}, points_of_plane, {face.data(), n}, crease)) return;
         std::array<double, 2> weight{0, 0}, distance{0, 0};
         n = 0;
-        for (std::size_t i = 0; i < member_count; ++i) {
-            if (members[i].sheet != k) continue;
-            const NormalSet& set = sets.sets[members[i].set];
+        for (const SheetMember& m : members) {
+            if (m.sheet != k) continue;
+            const NormalSet& set = sets.sets[m.set];
             const Vec3 d = position - set.centroid;
             const double w = sheet_weight(set, d, voxel_size);
             weight[face[n]] += w;
@@ -113,9 +104,8 @@ struct SheetsAtPoint {
     /// points; then no voxel can carry it there, and the grid point gets the sign of the sheet's other side.
     void snap(double voxel_size) {
         std::array<std::uint8_t, most> octants{};
-        for (std::size_t i = 0; i < member_count; ++i)
-            octants[members[i].sheet] =
-                static_cast<std::uint8_t>(octants[members[i].sheet] | 1u << members[i].octant);
+        for (const SheetMember& m : members)
+            octants[m.sheet] = static_cast<std::uint8_t>(octants[m.sheet] | 1u << m.octant);
         for (std::size_t k = 0; k < sheet_count; ++k) {
             LocalSheet& sheet = sheets[k];
             if (std::abs(sheet.distance) > sheets::surface_error() * voxel_size * sheet.weight) continue;
@@ -143,14 +133,13 @@ LocalSheets connect_members(const GridPoints& grid, const NormalSets& sets, cons
             if (voxel != no_index) result.first_member[i + 1] += sets.first[voxel + 1] - sets.first[voxel];
     });
     counts_to_first(result.first_member);
-    resize_unwritten(result.members, result.first_member.back());
+    resize_unwritten(result.sheet_of, result.first_member.back());
     for_chunks(n, chunks::usual, [&](std::size_t begin, std::size_t end, std::size_t) {
         SheetsAtPoint grid_point;
         for (std::size_t i = begin; i < end; ++i) {
-            grid_point.gather(grid.voxels[i], sets);
+            grid_point.members.gather(grid.voxels[i], sets);
             grid_point.connect(sets, related);
-            std::copy_n(grid_point.members.begin(), grid_point.member_count,
-                        result.members.data() + result.first_member[i]);
+            grid_point.copy_sheets_of_members(result.sheets_of_members(static_cast<Index>(i)));
         }
     });
     return result;
@@ -158,8 +147,9 @@ LocalSheets connect_members(const GridPoints& grid, const NormalSets& sets, cons
 
 /// Do two sets seen from a grid point belong to one sheet at a neighbouring one? Only where a neighbour's
 /// voxels are both sets' too: along axes along which both lie on one side, and to that side.
-bool joined_nearby(const GridPoints& grid, const LocalSheets& sheets, Index c, const SheetMember& a,
-                   const SheetMember& b) {
+bool joined_nearby(const GridPoints& grid, const NormalSets& sets, const LocalSheets& sheets, Index c,
+                   const SheetMember& a, const SheetMember& b) {
+    SheetMembers members;
     const unsigned same_side = ~unsigned{static_cast<std::uint8_t>(a.octant ^ b.octant)} & 7u;
     for (unsigned way = 1; way < 8; ++way) {
         if ((way & ~same_side) != 0) continue;
@@ -169,7 +159,8 @@ bool joined_nearby(const GridPoints& grid, const LocalSheets& sheets, Index c, c
         const Index grid_point = grid.find(GridPoints::code(at));
         if (grid_point == no_index) continue;
         int sheet_a = -1, sheet_b = -2;
-        for (const SheetMember& m : sheets.members_at(grid_point)) {
+        sheets.gather(grid, sets, grid_point, members);
+        for (const SheetMember& m : members) {
             if (m.set == a.set) sheet_a = m.sheet;
             if (m.set == b.set) sheet_b = m.sheet;
         }
@@ -180,8 +171,8 @@ bool joined_nearby(const GridPoints& grid, const LocalSheets& sheets, Index c, c
 
 /// Is a wall or gap known between two sheets? One pair of their sets may be an error, and so may be a set of
 /// few points.
-bool are_apart(std::span<const SheetMember> members, std::uint8_t one, std::uint8_t other,
-               const NormalSets& sets, const RelationTest& related) {
+bool are_apart(const SheetMembers& members, std::uint8_t one, std::uint8_t other, const NormalSets& sets,
+               const RelationTest& related) {
     unsigned points_of_one = 0, points_of_other = 0, pairs = 0;
     for (const SheetMember& a : members) {
         if (a.sheet == one) points_of_one += sets.sets[a.set].count;
@@ -195,7 +186,7 @@ bool are_apart(std::span<const SheetMember> members, std::uint8_t one, std::uint
 
 std::vector<Index> grid_points_with_several(const LocalSheets& sheets) {
     return indices_where(sheets.first_member.size() - 1, chunks::usual, [&](Index i) {
-        return std::ranges::any_of(sheets.members_at(i), [](const SheetMember& m) { return m.sheet > 0; });
+        return std::ranges::any_of(sheets.sheets_of_members(i), [](std::uint8_t sheet) { return sheet > 0; });
     });
 }
 
@@ -214,30 +205,27 @@ void close_sheets(const GridPoints& grid, const NormalSets& sets, const Relation
     for (int round = 0; round < enough_rounds; ++round) {
         std::vector<std::vector<Merge>> found(chunk_count(open.size(), 256));
         for_chunks(open.size(), 256, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
+            SheetMembers members;
             for (std::size_t k = begin; k < end; ++k) {
-                const auto members = sheets.members_at(open[k]);
-                for (std::size_t i = 0; i < members.size(); ++i)
-                    for (std::size_t j = i + 1; j < members.size(); ++j) {
-                        if (members[i].sheet == members[j].sheet) continue;
-                        const Index a = members[i].set, b = members[j].set;
-                        if ((sets.sets[a].normal | sets.sets[b].normal) < sheets::least_closure_cosine)
+                sheets.gather(grid, sets, open[k], members);
+                for (const SheetMember* a = members.begin(); a != members.end(); ++a)
+                    for (const SheetMember* b = a + 1; b != members.end(); ++b) {
+                        if (a->sheet == b->sheet) continue;
+                        if ((sets.sets[a->set].normal | sets.sets[b->set].normal)
+                            < sheets::least_closure_cosine)
                             continue;
-                        if (!joined_nearby(grid, sheets, open[k], members[i], members[j])) continue;
-                        if (are_apart(members, members[i].sheet, members[j].sheet, sets, related)) continue;
-                        found[chunk].push_back({open[k], std::min(members[i].sheet, members[j].sheet),
-                                                std::max(members[i].sheet, members[j].sheet)});
+                        if (!joined_nearby(grid, sets, sheets, open[k], *a, *b)) continue;
+                        if (are_apart(members, a->sheet, b->sheet, sets, related)) continue;
+                        found[chunk].push_back(
+                            {open[k], std::min(a->sheet, b->sheet), std::max(a->sheet, b->sheet)});
                     }
             }
         });
         bool changed = false;
         for (const auto& merges : found)
-            for (Merge m : merges) {
-                SheetMember* first = sheets.members.data() + sheets.first_member[m.grid_point];
-                const std::size_t n =
-                    sheets.first_member[m.grid_point + 1] - sheets.first_member[m.grid_point];
-                for (std::size_t i = 0; i < n; ++i)
-                    if (first[i].sheet == m.merged) first[i].sheet = m.kept, changed = true;
-            }
+            for (Merge m : merges)
+                for (std::uint8_t& sheet : sheets.sheets_of_members(m.grid_point))
+                    if (sheet == m.merged) sheet = m.kept, changed = true;
         if (!changed) break;
     }
 }
@@ -299,19 +287,24 @@ LocalSheets group_local_sheets(const GridPoints& grid, const NormalSets& sets, c
     const std::size_t n = grid.size();
     assign_large(result.first_sheet, n + 1, 0);
     for_each_index(n, chunks::usual, [&](Index i) {
-        result.first_sheet[i + 1] = SheetsAtPoint::count_sheets(result.members_at(i));
+        result.first_sheet[i + 1] = SheetsAtPoint::count_sheets(result.sheets_of_members(i));
     });
     counts_to_first(result.first_sheet);
     resize_unwritten(result.sheets, result.first_sheet.back());
     for_chunks(n, chunks::usual, [&](std::size_t begin, std::size_t end, std::size_t) {
         SheetsAtPoint grid_point;
-        for (std::size_t i = begin; i < end; ++i) {
-            SheetMember* first = result.members.data() + result.first_member[i];
-            grid_point.take({first, result.members.data() + result.first_member[i + 1]});
-            const VoxelCoord c = grid.coord(static_cast<Index>(i));
+        for (auto i = static_cast<Index>(begin); i < end; ++i) {
+            grid_point.sheet_count = result.first_sheet[i + 1] - result.first_sheet[i];
+            if (grid_point.sheet_count < 2) {
+                grid_point.members.gather(grid.voxels[i], sets); // all of sheet 0
+            } else {
+                result.gather(grid, sets, i, grid_point.members);
+                grid_point.renumber();
+                grid_point.copy_sheets_of_members(result.sheets_of_members(i));
+            }
+            const VoxelCoord c = grid.coord(i);
             grid_point.measure(Vec3(c[0], c[1], c[2]) * voxel_size, sets, voxel_size);
             grid_point.snap(voxel_size);
-            std::copy_n(grid_point.members.begin(), grid_point.member_count, first);
             std::copy_n(grid_point.sheets.begin(), grid_point.sheet_count,
                         result.sheets.data() + result.first_sheet[i]);
         }

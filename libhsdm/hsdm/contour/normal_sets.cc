@@ -321,8 +321,11 @@ NormalSets build_normal_sets(const Octree& octree, const OctreeLevel& level,
     validate(options);
     NormalSets result;
     assign_large(result.first, level.size() + 1, 0);
-    assign_large(result.of_point, octree.size(), no_index);
-    if (!octree.has_normals()) return result;
+    if (!octree.has_normals()) {
+        assign_large(result.of_point, octree.size(), NormalSets::no_set);
+        return result;
+    }
+    resize_unwritten(result.of_point, octree.size());
 
     tbb::enumerable_thread_specific<Scratch> scratch;
     const double cos_cluster = std::cos(options.cluster_angle);
@@ -342,24 +345,20 @@ NormalSets build_normal_sets(const Octree& octree, const OctreeLevel& level,
             if (n > 1)
                 std::stable_sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(n),
                                  [&](auto a, auto b) { return found[a].count > found[b].count; });
-            std::array<Index, 8> rank{};
+            std::array<std::uint8_t, 8> rank{};
             for (std::size_t k = 0; k < n; ++k) {
                 sets.push_back(found[order[k]]);
-                rank[order[k]] = static_cast<Index>(k);
+                rank[order[k]] = static_cast<std::uint8_t>(k);
             }
-            for (Index i = begin; i < end;
-                 ++i) // index within the voxel; the voxel's first set is added below
-                if (clusters.label(i - begin) != unassigned)
-                    result.of_point[i] = rank[clusters.label(i - begin)];
+            for (Index i = begin; i < end; ++i) {
+                const std::uint8_t label = clusters.label(i - begin);
+                result.of_point[i] = label == unassigned ? NormalSets::no_set : rank[label];
+            }
             result.first[v + 1] = static_cast<Index>(n);
         }
     };
     result.sets = collected<NormalSet>(level.size(), chunks::slow, cluster);
     counts_to_first(result.first);
-    for_each_index(level.size(), chunks::slow, [&](Index v) {
-        for (Index i = level.first_point[v]; i < level.first_point[v + 1]; ++i)
-            if (result.of_point[i] != no_index) result.of_point[i] += result.first[v];
-    });
     return result;
 }
 

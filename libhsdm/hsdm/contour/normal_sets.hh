@@ -44,15 +44,24 @@ struct NormalSet {
 struct NormalSets {
     std::vector<NormalSet> sets;
     std::vector<Index> first{0};
-    std::vector<Index> of_point; ///< per octree point, its set; no_index for points without a normal
+    /// Per octree point, which of its voxel's sets it is in; no_set for points without a normal.
+    std::vector<std::uint8_t> of_point;
     /// Sets that have a wall or gap between them (separate_patches): those of set s, ascending, are
     /// apart[first_apart[s]] .. apart[first_apart[s + 1]]. Both are empty if there are none.
     std::vector<Index> apart, first_apart;
 
     static constexpr std::size_t most_per_voxel = 8;
+    static constexpr std::uint8_t no_set = 0xff;
 
     std::span<const NormalSet> of_voxel(Index v) const {
         return {sets.data() + first[v], sets.data() + first[v + 1]};
+    }
+    /// Calls f(point) for the octree points of a set, ascending.
+    template <class F>
+    void for_points_of(Index set, const OctreeLevel& level, F&& f) const {
+        const Index voxel = sets[set].voxel;
+        for (Index p = level.first_point[voxel]; p < level.first_point[voxel + 1]; ++p)
+            if (of_point[p] == set - first[voxel]) f(p);
     }
 };
 

@@ -63,22 +63,24 @@ Vec3 middle_of(const OctreeLevel& level, Index voxel) {
     return (Vec3(c[0], c[1], c[2]) + Vec3(0.5, 0.5, 0.5)) * level.voxel_size;
 }
 
-void remove(const std::vector<std::uint8_t>& is_outlier, NormalSets& sets) {
-    std::vector<Index> renumbered(sets.sets.size(), no_index);
+void remove(const OctreeLevel& level, const std::vector<std::uint8_t>& is_outlier, NormalSets& sets) {
     Index kept = 0;
-    for (std::size_t v = 0, s = 0; v + 1 < sets.first.size(); ++v) {
-        const Index end = sets.first[v + 1];
+    for (std::size_t v = 0, s = 0; v < level.size(); ++v) {
+        const std::size_t begin = s, end = sets.first[v + 1];
         sets.first[v] = kept;
-        for (; s < end; ++s)
-            if (!is_outlier[s]) {
-                renumbered[s] = kept;
-                sets.sets[kept++] = sets.sets[s];
-            }
+        std::array<std::uint8_t, NormalSets::most_per_voxel> renumbered;
+        for (; s < end; ++s) {
+            renumbered[s - begin] =
+                is_outlier[s] ? NormalSets::no_set : static_cast<std::uint8_t>(kept - sets.first[v]);
+            if (!is_outlier[s]) sets.sets[kept++] = sets.sets[s];
+        }
+        if (kept - sets.first[v] == end - begin) continue; // nothing went, as nearly everywhere
+        for (Index p = level.first_point[v]; p < level.first_point[v + 1]; ++p)
+            if (std::uint8_t& number = sets.of_point[p]; number != NormalSets::no_set)
+                number = renumbered[number];
     }
     sets.first.back() = kept;
     sets.sets.resize(kept);
-    for (Index& s : sets.of_point)
-        if (s != no_index) s = renumbered[s];
 }
 
 } // namespace
@@ -109,7 +111,7 @@ Occurrences drop_outlier_sets(const OctreeLevel& level, const RelationTest& rela
     Occurrences points;
     for (std::size_t s = 0; s < is_outlier.size(); ++s)
         if (is_outlier[s]) points.add({sets.sets[s].count, middle_of(level, sets.sets[s].voxel)});
-    if (points.count > 0) remove(is_outlier, sets);
+    if (points.count > 0) remove(level, is_outlier, sets);
     return points;
 }
 

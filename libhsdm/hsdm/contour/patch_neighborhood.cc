@@ -64,11 +64,11 @@ bool opposed(const NormalSet& a, const NormalSet& b) {
 void sample_set(const OctreeLevel& level, const NormalSets& sets, Index set, std::vector<Index>& samples) {
     const NormalSet& s = sets.sets[set];
     Index skipped = 0; // points of the set until the next sample
-    for (Index k = level.first_point[s.voxel]; k < level.first_point[s.voxel + 1]; ++k) {
-        if (sets.of_point[k] != set || skipped-- > 0) continue;
+    sets.for_points_of(set, level, [&](Index k) {
+        if (skipped-- > 0) return;
         samples.push_back(k);
         skipped = stride_of_samples(s) - 1;
-    }
+    });
 }
 
 void PatchNeighborhood::gather(Index voxel) {

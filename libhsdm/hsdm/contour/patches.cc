@@ -37,7 +37,7 @@ private:
     struct Split {
         Index voxel;
         std::vector<NormalSet> sets;
-        std::vector<Index> of_point; ///< number within the voxel, or no_index
+        std::vector<std::uint8_t> of_point; ///< as NormalSets::of_point
     };
 
     PatchNeighborhood neighborhood(const SetSamples& samples) {
@@ -117,43 +117,43 @@ private:
             room -= count - 1;
             if (result.of_point.empty())
                 result.of_point.assign(sets_.of_point.begin() + begin, sets_.of_point.begin() + end);
-            label_points(around, i, patch, begin, result.of_point);
+            label_points(around, static_cast<std::uint8_t>(i), patch, begin, result.of_point);
         }
         if (result.of_point.empty()) return;
         rebuild(begin, result);
         found.push_back(std::move(result));
     }
 
-    /// Marks the points of patches by set + (patch << 28); most sets of a scan are fewer.
-    void label_points(const PatchNeighborhood& around, std::size_t i, const std::vector<std::uint8_t>& patch,
-                      Index begin, std::vector<Index>& of_point) const {
+    /// Marks the points of patches of the voxel's i-th set by i + (patch << 3); both are less than 8.
+    void label_points(const PatchNeighborhood& around, std::uint8_t i, const std::vector<std::uint8_t>& patch,
+                      Index begin, std::vector<std::uint8_t>& of_point) const {
         const auto samples = around.sampled(i);
         const auto squared = [&](std::size_t s, const Vec3& p) {
             return (octree_.positions[samples[s]] - p).sqrnorm();
         };
         for (std::size_t k = 0; k < of_point.size(); ++k) {
-            if (of_point[k] != around.number(i)) continue;
+            if (of_point[k] != i) continue;
             const Vec3& p = octree_.positions[begin + k];
             std::size_t nearest = 0;
             for (std::size_t s = 1; s < samples.size(); ++s)
                 if (squared(s, p) < squared(nearest, p)) nearest = s;
-            of_point[k] = around.number(i) | static_cast<Index>(patch[nearest]) << 28;
+            of_point[k] = static_cast<std::uint8_t>(i | patch[nearest] << 3);
         }
     }
 
     /// Sets anew from labels, by descending count.
     void rebuild(Index begin, Split& split) const {
-        std::vector<Index> labels;
-        for (Index label : split.of_point)
-            if (label != no_index && std::ranges::find(labels, label) == labels.end())
+        std::vector<std::uint8_t> labels;
+        for (std::uint8_t label : split.of_point)
+            if (label != NormalSets::no_set && std::ranges::find(labels, label) == labels.end())
                 labels.push_back(label);
         struct Found {
             NormalSet set;
-            Index label;
+            std::uint8_t label;
         };
         std::vector<Found> found;
         std::vector<Index> points;
-        for (Index label : labels) {
+        for (std::uint8_t label : labels) {
             points.clear();
             for (std::size_t k = 0; k < split.of_point.size(); ++k)
                 if (split.of_point[k] == label) points.push_back(begin + static_cast<Index>(k));
@@ -161,10 +161,10 @@ private:
         }
         std::ranges::stable_sort(found,
                                  [](const Found& a, const Found& b) { return a.set.count > b.set.count; });
-        for (Index& label : split.of_point) {
-            if (label == no_index) continue;
+        for (std::uint8_t& label : split.of_point) {
+            if (label == NormalSets::no_set) continue;
             const auto at = std::ranges::find(found, label, &Found::label);
-            label = static_cast<Index>(at - found.begin());
+            label = static_cast<std::uint8_t>(at - found.begin());
         }
         for (const Found& f : found) split.sets.push_back(f.set);
     }
@@ -172,7 +172,7 @@ private:
     /// Puts the split voxels' sets in place of those before.
     void insert(const std::vector<Split>& splits) {
         std::vector<NormalSet> sets;
-        std::vector<Index> first(1, 0), moved(sets_.sets.size());
+        std::vector<Index> first(1, 0);
         auto next = splits.begin();
         for (Index v = 0; v + 1 < sets_.first.size(); ++v) {
             const Index begin = sets_.first[v], end = sets_.first[v + 1];
@@ -181,20 +181,12 @@ private:
                 sets.insert(sets.end(), next->sets.begin(), next->sets.end());
                 ++next;
             } else {
-                for (Index s = begin; s < end; ++s) {
-                    moved[s] = static_cast<Index>(sets.size());
-                    sets.push_back(sets_.sets[s]);
-                }
+                for (Index s = begin; s < end; ++s) sets.push_back(sets_.sets[s]);
             }
             first.push_back(static_cast<Index>(sets.size()));
         }
-        for_each_index(sets_.of_point.size(), chunks::light, [&](Index k) {
-            if (sets_.of_point[k] != no_index) sets_.of_point[k] = moved[sets_.of_point[k]];
-        });
         for (const Split& split : splits)
-            for (std::size_t k = 0; k < split.of_point.size(); ++k)
-                sets_.of_point[level_.first_point[split.voxel] + k] =
-                    split.of_point[k] == no_index ? no_index : first[split.voxel] + split.of_point[k];
+            std::ranges::copy(split.of_point, sets_.of_point.begin() + level_.first_point[split.voxel]);
         sets_.sets = std::move(sets);
         sets_.first = std::move(first);
     }

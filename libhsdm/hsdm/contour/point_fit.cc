@@ -125,10 +125,20 @@ PointFit::PointFit(const Octree& octree, const OctreeLevel& level, const DualVer
       duals_(duals),
       vertices_(vertices),
       of_voxel_(std::span(vertices.voxel).first(duals.size()), level.size()),
-      upward_(large_vector<Vec3>(duals.size(), Vec3(0, 0, 0))) {
+      rises_(unwritten_vector<std::uint8_t>(duals.size())) {
     for_each_index(duals.size(), chunks::light, [&](Index v) {
-        if (vertices.classes[v] == VertexClass::smooth && !duals.open[v]) upward_[v] = vertices.directions[v];
+        rises_[v] = vertices.classes[v] == VertexClass::smooth && !duals.open[v];
     });
+}
+
+PointFit::ForeignHeights::ForeignHeights(const std::array<std::vector<Foreign>, ranges>& by_range) {
+    std::size_t size = 0;
+    for (const std::vector<Foreign>& of_range : by_range) size += of_range.size();
+    all.reserve(size);
+    for (std::size_t r = 0; r < ranges; ++r) {
+        all.insert(all.end(), by_range[r].begin(), by_range[r].end());
+        first[r + 1] = static_cast<Index>(all.size());
+    }
 }
 
 void PointFit::gather_beside(Index voxel, std::vector<Index>& duals) const {
@@ -148,9 +158,10 @@ PointFit::Measure PointFit::measure(const std::vector<Vec3>& positions) const {
     // places in space, so that sums come out the same where only part of the level is known. They are kept by
     // ranges of vertices, to which they are added in parallel.
     const std::vector<Index> blocks = blocks_of(level_);
-    std::vector<std::array<std::vector<Foreign>, ranges>> foreign(blocks.size() - 1);
+    std::vector<ForeignHeights> foreign(blocks.size() - 1);
     const auto per_range = static_cast<Index>(chunk_count(duals_.size(), ranges));
-    const Vec3* const upward = upward_.data();
+    const Vec3* const upward = vertices_.directions.data();
+    const std::uint8_t* const is_asked = rises_.data();
     const Index* const voxel_of = vertices_.voxel.data();
     Heights* const heights = result.heights.data();
     for_each_task(foreign.size(), [&](std::size_t chunk) {
@@ -158,6 +169,7 @@ PointFit::Measure PointFit::measure(const std::vector<Vec3>& positions) const {
         std::vector<Index> beside;
         Around around;
         std::vector<unsigned> inside;
+        std::array<std::vector<Foreign>, ranges> elsewhere;
         for (std::size_t x = begin; x < end; ++x) {
             if (of_voxel_.of(x).empty()) gather_beside(static_cast<Index>(x), beside);
             const std::span<const Index> near = of_voxel_.of(x).empty() ? beside : of_voxel_.of(x);
@@ -183,6 +195,7 @@ PointFit::Measure PointFit::measure(const std::vector<Vec3>& positions) const {
                 const double least = angles::one_sheet * distance;
                 for (std::size_t k = 0; k < 3; ++k) {
                     const Index v = foot.corners[k], voxel = voxel_of[v];
+                    if (!is_asked[v]) continue;
                     const Vec3& up = upward[v];
                     const double height = up | way;
                     if ((normal | up) < angles::one_sheet
@@ -191,17 +204,20 @@ PointFit::Measure PointFit::measure(const std::vector<Vec3>& positions) const {
                     if (voxel >= begin && voxel < end)
                         heights[v].add(foot.nearest.weights[k], height);
                     else
-                        foreign[chunk][v / per_range].push_back({v, foot.nearest.weights[k], height});
+                        elsewhere[v / per_range].push_back({v, foot.nearest.weights[k], height});
                 }
             }
             result.misfit[x] = misfit;
             farthest_of[x] = farthest;
         }
+        foreign[chunk] = ForeignHeights(elsewhere);
     });
     for_each_task(ranges, [&](std::size_t range) {
-        for (const auto& of_block : foreign)
-            for (const Foreign& f : of_block[range]) heights[f.dual].add(f.weight, f.height);
+        for (const ForeignHeights& of_block : foreign)
+            for (Index k = of_block.first[range]; k < of_block.first[range + 1]; ++k)
+                heights[of_block.all[k].dual].add(of_block.all[k].weight, of_block.all[k].height);
     });
+    foreign = {};
     result.standing_out = standing_out(farthest_of, result.misfit);
     return result;
 }

@@ -54,6 +54,14 @@ private:
         Index dual;
         double weight, height;
     };
+    /// Heights over a block's points of vertices in other blocks' voxels: those of range r of vertices are
+    /// all[first[r]] .. all[first[r + 1]].
+    struct ForeignHeights {
+        std::vector<Foreign> all;
+        std::array<Index, ranges + 1> first{};
+        explicit ForeignHeights(const std::array<std::vector<Foreign>, ranges>& by_range);
+        ForeignHeights() = default;
+    };
     std::vector<Index> standing_out(const std::vector<double>& farthest,
                                     const std::vector<double>& misfit) const;
     void gather_beside(Index voxel, std::vector<Index>& duals) const;
@@ -62,9 +70,8 @@ private:
     const OctreeLevel& level_;
     const DualVertices& duals_;
     const PlacedVertices& vertices_;
-    Groups of_voxel_; // its dual vertices
-    /// per vertex, its direction; zero, which no normal agrees with, where no heights are asked for
-    std::vector<Vec3> upward_;
+    Groups of_voxel_;                 // its dual vertices
+    std::vector<std::uint8_t> rises_; ///< per vertex, are heights asked for?
 };
 
 } // namespace hsdm

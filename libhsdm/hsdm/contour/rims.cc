@@ -50,12 +50,10 @@ public:
 
 private:
     void find_nearest(Index s, const Vec3& at, SheetEnd& end) const {
-        const Index voxel = sets_.sets[s].voxel;
-        for (Index p = level_.first_point[voxel]; p < level_.first_point[voxel + 1]; ++p) {
-            if (sets_.of_point[p] != s) continue;
+        sets_.for_points_of(s, level_, [&](Index p) {
             const double d = (octree_.positions[p] - at).norm();
             if (d < end.distance) end.distance = d, end.nearest = octree_.positions[p];
-        }
+        });
     }
 
     const Octree& octree_;

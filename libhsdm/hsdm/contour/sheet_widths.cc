@@ -41,8 +41,7 @@ bool bends_like_cylinder(const Octree& octree, const OctreeLevel& level, const N
     // half of what a cylinder of that width turns by
     if (!(std::abs(set.turn) * level.voxel_size * widths::of_cylinder > along)) return false;
     double scatter = 0;
-    for (Index p = level.first_point[set.voxel]; p < level.first_point[set.voxel + 1]; ++p)
-        if (sets.of_point[p] == s) scatter += (octree.normals[p] - set.normal).sqrnorm();
+    sets.for_points_of(s, level, [&](Index p) { scatter += (octree.normals[p] - set.normal).sqrnorm(); });
     return set.turn * set.turn * set.count > widths::explained * along * scatter;
 }
 

@@ -99,7 +99,7 @@ bool Witnesses::speak_for(Index f) {
 
 void Witnesses::gather(Index v, const Vec3& centre) {
     for (Index p = level_.first_point[v]; p < level_.first_point[v + 1]; ++p)
-        if (octree_.source[p] != no_index) near_.emplace_back((octree_.positions[p] - centre).sqrnorm(), p);
+        if (!octree_.is_completed(p)) near_.emplace_back((octree_.positions[p] - centre).sqrnorm(), p);
 }
 
 std::vector<Index> Witnesses::voxels_at(std::span<const Index> ring) const {
@@ -226,9 +226,9 @@ bool Witnesses::is_narrow(std::span<const Index> ring) const {
 
 bool Witnesses::has_completed(std::span<const Index> voxels) const {
     return std::ranges::any_of(voxels, [&](Index v) {
-        const auto begin = octree_.source.begin();
-        return std::find(begin + level_.first_point[v], begin + level_.first_point[v + 1], no_index)
-               != begin + level_.first_point[v + 1];
+        for (Index p = level_.first_point[v]; p < level_.first_point[v + 1]; ++p)
+            if (octree_.is_completed(p)) return true;
+        return false;
     });
 }
 

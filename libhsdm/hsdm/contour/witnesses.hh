@@ -53,7 +53,7 @@ private:
     void for_points(std::span<const Index> voxels, F&& f) const {
         for (const Index v : voxels)
             for (Index p = level_.first_point[v]; p < level_.first_point[v + 1]; ++p)
-                if (octree_.source[p] != no_index) f(p);
+                if (!octree_.is_completed(p)) f(p);
     }
     /// A point of a sheet across a tube: does it face as the first of two along the axis should?
     struct Across {

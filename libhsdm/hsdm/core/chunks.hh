@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <span>
 #include <type_traits>
 #include <vector>
 
@@ -68,27 +69,53 @@ void for_each_index(std::size_t n, std::size_t chunk_size, F&& f) {
     });
 }
 
-/// Concatenates what the chunks produced.
+/// Appends what chunks produced.
 template <class T>
-std::vector<T> joined(const std::vector<std::vector<T>>& parts) {
-    std::vector<std::size_t> offset(parts.size() + 1, 0);
+void append_parts(std::span<const std::vector<T>> parts, std::vector<T>& whole) {
+    std::vector<std::size_t> offset(parts.size() + 1, whole.size());
     for (std::size_t i = 0; i < parts.size(); ++i) offset[i + 1] = offset[i] + parts[i].size();
-    std::vector<T> whole = unwritten_vector<T>(offset.back());
+    resize_unwritten(whole, offset.back());
     for_each_task(parts.size(), [&](std::size_t i) {
         std::copy(parts[i].begin(), parts[i].end(), whole.begin() + static_cast<std::ptrdiff_t>(offset[i]));
     });
+}
+
+/// Concatenates what the chunks produced.
+template <class T>
+std::vector<T> joined(const std::vector<std::vector<T>>& parts) {
+    std::vector<T> whole;
+    append_parts<T>(parts, whole);
     return whole;
 }
 
-/// What f(begin, end, part) appends to `part` for consecutive ranges of [0, n), one after the other; in
-/// parallel, by chunks of that size, or less where they would be few.
-template <class T, class F>
-std::vector<T> collected(std::size_t n, std::size_t chunk_size, F&& f) {
+/// What f(begin, end, part) appends to `part` for consecutive ranges of [0, n), one after the other, then
+/// what else is given; in parallel, by chunks of that size, or less where they would be few. So many chunks
+/// are joined at a time that all threads have some, and that their parts are little beside the whole.
+template <class T, class F, class... Last>
+std::vector<T> collected(std::size_t n, std::size_t chunk_size, F&& f, const Last&... last) {
+    constexpr std::size_t at_a_time = 256;
     chunk_size = chunk_of_few(n, chunk_size);
-    std::vector<std::vector<T>> parts(chunk_count(n, chunk_size));
-    for_chunks(n, chunk_size,
-               [&](std::size_t begin, std::size_t end, std::size_t chunk) { f(begin, end, parts[chunk]); });
-    return joined(parts);
+    const std::size_t chunks = chunk_count(n, chunk_size);
+    std::vector<T> whole;
+    std::vector<std::vector<T>> parts(std::min(chunks, at_a_time));
+    for (std::size_t done = 0; done < chunks;) {
+        parts.resize(std::min(parts.size(), chunks - done));
+        for_each_task(parts.size(), [&](std::size_t i) {
+            parts[i].clear();
+            f((done + i) * chunk_size, std::min(n, (done + i + 1) * chunk_size), parts[i]);
+        });
+        done += parts.size();
+        std::size_t size = whole.size() + sizeof...(last);
+        for (const std::vector<T>& part : parts) size += part.size();
+        if (done < chunks && size > whole.capacity()) { // as many of each chunk that is left, and some more
+            const std::size_t in_all = size / done * chunks;
+            reserve_ahead(whole, std::max(in_all + in_all / 32, size + size / 4));
+        }
+        reserve_large(whole, size);
+        append_parts<T>(parts, whole);
+    }
+    (whole.push_back(last), ...);
+    return whole;
 }
 
 /// 0, 1, ... n - 1.

@@ -52,6 +52,20 @@ void reserve_large(std::vector<T>& values, std::size_t n) {
     }
 }
 
+/// The same where it is not known how many will come: of the memory only what is filled is touched.
+template <class T>
+void reserve_ahead(std::vector<T>& values, std::size_t n) {
+    if (n <= values.capacity()) return;
+    if constexpr (std::is_trivially_copyable_v<T>) {
+        std::vector<T> larger;
+        larger.reserve(n);
+        append_large(larger, values);
+        values.swap(larger);
+    } else {
+        values.reserve(n);
+    }
+}
+
 /// Appends one value, as push_back does, to a vector that becomes large.
 template <class T>
 void push_large(std::vector<T>& values, T value) { // not by reference: it may be of the vector itself

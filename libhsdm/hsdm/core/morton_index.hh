@@ -34,6 +34,14 @@ public:
     }
     static constexpr std::size_t cells = 64; ///< of a block
 
+    /// As std::popcount, which calls a function where the processor may not have an instruction for it.
+    static Index count_bits(std::uint64_t bits) {
+        bits -= bits >> 1 & 0x5555555555555555ull;
+        bits = (bits & 0x3333333333333333ull) + (bits >> 2 & 0x3333333333333333ull);
+        bits = (bits + (bits >> 4)) & 0x0f0f0f0f0f0f0f0full;
+        return static_cast<Index>(bits * 0x0101010101010101ull >> 56);
+    }
+
     struct Block {
         MortonCode number = 0;  // the codes without their last six bits
         std::uint64_t used = 0; // a bit for each code that there is; none in an empty slot
@@ -61,14 +69,6 @@ private:
     static constexpr std::size_t siblings = 8;
 
     static std::uint64_t bit_of(MortonCode code) { return std::uint64_t{1} << code % cells; }
-
-    /// As std::popcount, which calls a function where the processor may not have an instruction for it.
-    static Index count_bits(std::uint64_t bits) {
-        bits -= bits >> 1 & 0x5555555555555555ull;
-        bits = (bits & 0x3333333333333333ull) + (bits >> 2 & 0x3333333333333333ull);
-        bits = (bits + (bits >> 4)) & 0x0f0f0f0f0f0f0f0full;
-        return static_cast<Index>(bits * 0x0101010101010101ull >> 56);
-    }
 
     std::size_t take_slot(MortonCode number, std::size_t first) {
         for (std::size_t slot = slot_of(number);; slot = after(slot)) {

@@ -390,9 +390,7 @@ std::vector<Index> find_runs(const std::vector<MortonCode>& codes, int shift) {
             part.insert(part.end(), found.begin(), found.begin() + count);
         }
     };
-    std::vector<Index> runs = collected<Index>(codes.size(), chunks::light, add);
-    runs.push_back(static_cast<Index>(codes.size()));
-    return runs;
+    return collected<Index>(codes.size(), chunks::light, add, static_cast<Index>(codes.size()));
 }
 
 /// The voxels of a level from its runs of points or of finer voxels.

@@ -48,10 +48,14 @@ struct Octree {
     Vec3 origin{0, 0, 0}; ///< least corner of the bounding cube; positions below are relative to it
     double extent = 0; ///< edge of the bounding cube: the cloud's longest side, not padded, unless asked for
     Box bounds;        ///< box of the cloud, as the cloud has it but for the unit
-    std::vector<MortonCode> codes; ///< per point, level 21, ascending
-    std::vector<Vec3> positions;   ///< per point, relative to origin
-    std::vector<Vec3> normals;     ///< per point, unit or (0, 0, 0); empty if the cloud has none
-    std::vector<Index> source;     ///< per point, its index in the cloud (the first of merged duplicates)
+    /// Per point, level 21, ascending. Once a level is extracted nothing of it asks for them: they may be
+    /// freed.
+    std::vector<MortonCode> codes;
+    std::vector<Vec3> positions; ///< per point, relative to origin
+    std::vector<Vec3> normals;   ///< per point, unit or (0, 0, 0); empty if the cloud has none
+    /// Per point, its index in the cloud (the first of merged duplicates); may be freed once nobody asks what
+    /// else the cloud has: then all points count as measured.
+    std::vector<Index> source;
     std::size_t merged_duplicates = 0;
     /// A merged point and the first one equal to it, which represents it; sorted by the latter, as indices in
     /// the cloud. None if the cloud has no colours and scalars, for which alone they matter.
@@ -60,8 +64,12 @@ struct Octree {
     };
     std::vector<Duplicate> duplicates;
 
-    std::size_t size() const { return codes.size(); }
+    std::size_t size() const { return positions.size(); }
     bool has_normals() const { return !normals.empty(); }
+    /// Is a point one of the cloud, not one that was made?
+    bool is_measured(Index point) const { return source.empty() || hsdm::is_measured(source[point]); }
+    /// Was it made to complete the surface?
+    bool is_completed(Index point) const { return !source.empty() && source[point] == no_index; }
     double voxel_size(int depth) const { return extent / static_cast<double>(1u << depth); }
 };
 

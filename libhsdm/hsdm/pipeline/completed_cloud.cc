@@ -75,9 +75,13 @@ CompletedCloud complete_cloud(const Octree& octree, const OctreeLevel& level, co
     completed.octree.duplicates = octree.duplicates;
     for_each_index(completed.octree.size(), chunks::light, [&](Index i) {
         Index& source = completed.octree.source[i];
-        source = source < octree.size() ? octree.source[source] : source_of_added;
+        if (source >= octree.size())
+            source = source_of_added;
+        else if (!octree.source.empty())
+            source = octree.source[source];
     });
     completed.level = extract_level(completed.octree, cube.depth);
+    release(completed.octree.codes);
     return completed;
 }
 

@@ -22,7 +22,7 @@ Index count_around(const Octree& octree, const OctreeLevel& level, const Vec3& p
         const Index voxel = level.find(c);
         if (voxel == no_index) return;
         for (Index p = level.first_point[voxel]; p < level.first_point[voxel + 1]; ++p)
-            count += is_measured(octree.source[p]) && (octree.positions[p] - place).sqrnorm() < h * h
+            count += octree.is_measured(p) && (octree.positions[p] - place).sqrnorm() < h * h
                      && (octree.normals[p] | normal) > 0.5;
     };
     look(at);

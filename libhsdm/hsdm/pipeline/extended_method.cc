@@ -101,6 +101,7 @@ NormalSets separated_sets(const MethodInput& in, Report& report) {
 
 /// How many are not completed ones.
 std::size_t measured_points(const Octree& octree) {
+    if (octree.source.empty()) return octree.size();
     return static_cast<std::size_t>(std::ranges::count_if(octree.source, is_measured));
 }
 
@@ -113,8 +114,9 @@ bool turn_solid_outward(PolygonMesh& mesh) {
 }
 
 /// What is known of facets once they are made, and what their vertices inherit from the points; takes the
-/// mesh. (The adaptive grid, which makes another one of it, has an order of its own.)
-PolygonMesh finished(const MethodInput& in, const NormalSets& sets, DualContour& facets, Report& report,
+/// mesh, and the sets, to free them. (The adaptive grid, which makes another one of it, has an order of its
+/// own.)
+PolygonMesh finished(const MethodInput& in, NormalSets&& sets, DualContour& facets, Report& report,
                      FacetKnowledge& known) {
     note_counts(facets, report);
     note_dropped("facets of splinters", facets.splinters, in, report);
@@ -132,6 +134,7 @@ PolygonMesh finished(const MethodInput& in, const NormalSets& sets, DualContour&
         report.rejected["edges_doubtful"] = features.doubtful;
         known.hints = std::move(features.hints);
     }
+    sets = NormalSets();
     known.cells = std::move(facets.cells);
     known.intersections = {facets.intersections.after, facets.intersections.first};
     if (!wants_adaptive(in.options)) order_by_voxels(in.level.size(), facets.voxel, facets.mesh, known);
@@ -410,7 +413,7 @@ PolygonMesh extended_method(const MethodInput& in, Report& report, FacetKnowledg
     report = std::move(draft.report);
     report.grid.sets = measured_sets;
     const bool marked = draft.cloud || in.options.holes == Holes::complete;
-    PolygonMesh mesh = finished(draft.input(in), draft.sets, draft.facets, report, known);
+    PolygonMesh mesh = finished(draft.input(in), std::move(draft.sets), draft.facets, report, known);
     if (marked) return_to(in, draft, draft.facets.voxel, mesh, known);
     return mesh;
 }

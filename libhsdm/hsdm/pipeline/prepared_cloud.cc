@@ -1,5 +1,6 @@
 #include "hsdm/pipeline/prepared_cloud.hh"
 
+#include "hsdm/cloud/point_attributes.hh"
 #include "hsdm/contour/constants.hh"
 #include "hsdm/errors.hh"
 #include "hsdm/normals/noise.hh"
@@ -150,6 +151,11 @@ OctreeLevel PreparedCloud::take_level(int depth, std::optional<NormalSets>& sets
     looked_.reset();
     sets = std::move(looked.sets);
     return std::move(looked.level);
+}
+
+void PreparedCloud::release_sources(const PointView& cloud) {
+    const bool asked_for = moved_ || !cloud.sensors.empty() || !attributes_of(cloud).empty();
+    if (!asked_for) octree.source = std::vector<Index>();
 }
 
 void PreparedCloud::note_outliers(const Occurrences& outliers) {

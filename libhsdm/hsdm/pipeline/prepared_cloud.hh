@@ -47,6 +47,10 @@ public:
     /// Did points take the sides of layers of one surface?
     bool has_layers() const { return has_layers_; }
 
+    /// Frees the codes; to be called when the last level is taken.
+    void release_codes() { octree.codes = std::vector<MortonCode>(); }
+    /// The same of where points stand in the cloud, if it has no more than positions, which they still have.
+    void release_sources(const PointView& cloud);
     /// Frees the normals; to be called when the last facets are made.
     void release_normals() { octree.normals = std::vector<Vec3>(); }
 

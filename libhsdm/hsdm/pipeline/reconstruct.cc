@@ -31,6 +31,10 @@ void reconstruct_level(InputCloud& cloud, PreparedCloud& prepared, int depth, bo
     std::optional<NormalSets> sets;
     const OctreeLevel level =
         phases.run("voxels", 0.15, seconds.octree, [&] { return prepared.take_level(depth, sets); });
+    if (last) {
+        prepared.release_codes();
+        prepared.release_sources(*cloud);
+    }
     report.grid.depth = depth;
     report.grid.voxel_size = level.voxel_size;
     report.grid.voxels = report.grid.sets = level.size();
