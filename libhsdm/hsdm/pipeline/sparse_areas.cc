@@ -42,10 +42,11 @@ double mean_points(double points_per_occupied) {
     return mean;
 }
 
-/// Share of the surface that has fewer points to a level's voxels than `fewest`.
-double sparse_share(const OctreeLevel& level, double fewest) {
+/// Calls visit(first voxel, end, points to each voxel that the surface passes, how many it passes) for the
+/// windows of a level with points enough to tell.
+template <class Visit>
+void for_windows(const OctreeLevel& level, Visit&& visit) {
     const OctreeLevel wide = coarser_level(level, level.depth - std::min(level.depth, uneven::window_levels));
-    double sparse = 0, all = 0;
     Index voxel = 0;
     for (std::size_t w = 0; w < wide.size(); ++w) {
         const Index begin = voxel, end_point = wide.first_point[w + 1];
@@ -53,9 +54,17 @@ double sparse_share(const OctreeLevel& level, double fewest) {
         const auto points = static_cast<double>(end_point - wide.first_point[w]);
         if (points < uneven::fewest_of_window) continue;
         const double mean = mean_points(points / static_cast<double>(voxel - begin));
-        all += points / mean;
-        if (mean < fewest) sparse += points / mean;
+        visit(begin, voxel, mean, points / mean);
     }
+}
+
+/// Share of the surface that has fewer points to a level's voxels than `fewest`.
+double sparse_share(const OctreeLevel& level, double fewest) {
+    double sparse = 0, all = 0;
+    for_windows(level, [&](Index, Index, double mean, double passed) {
+        all += passed;
+        if (mean < fewest) sparse += passed;
+    });
     return all > 0 ? sparse / all : 0;
 }
 
@@ -114,6 +123,19 @@ void for_places(const PolygonMesh& mesh, std::size_t f, const std::vector<Vec3>&
 }
 
 } // namespace
+
+Occurrences voxels_too_small(const OctreeLevel& level) {
+    double small = 0, all = 0;
+    Occurrences result;
+    for_windows(level, [&](Index begin, Index end, double mean, double passed) {
+        all += passed;
+        if (mean >= uneven::points_to_close) return;
+        small += passed;
+        const VoxelCoord at = morton_decode(level.codes[begin]);
+        result.add({end - begin, Vec3(at[0] + 0.5, at[1] + 0.5, at[2] + 0.5) * level.voxel_size});
+    });
+    return small > uneven::most_sparse * all ? result : Occurrences();
+}
 
 int levels_above_sparse(const OctreeLevel& level) {
     if (sparse_share(level, uneven::points_per_voxel) <= uneven::most_sparse) return 0;
