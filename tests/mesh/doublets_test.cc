@@ -38,6 +38,33 @@ TEST_CASE("the two facets round an expendable vertex become one", "[mesh]") {
     CHECK(t.euler == 2);
 }
 
+TEST_CASE("a vertex on the straight way between its only two neighbours goes, its facets stay", "[mesh]") {
+    PolygonMesh mesh = cube_with_doublet(0); // vertex 8 lies on the diagonal of the top
+    PolygonMesh bent = cube_with_doublet(0.05);
+    CHECK(drop_straight_vertices(0.04, bent) == 0);
+    CHECK(drop_straight_vertices(0.06, bent) == 1);
+    CHECK(drop_straight_vertices(0, mesh) == 1);
+    CHECK(remove_isolated_vertices(mesh) == 1);
+    const Topology t = measure_topology(mesh);
+    CHECK(t.closed());
+    CHECK(t.manifold());
+    CHECK(t.triangles == 2);
+    CHECK(t.quads == 5);
+    CHECK(find_self_intersections(mesh).triangle_pairs == 0);
+}
+
+TEST_CASE("no vertex goes where an edge joins its neighbours, or a facet would be left with two corners",
+          "[mesh]") {
+    // a triangle 4 5 8 and the rest of the top: vertex 8 lies between 4 and 5, which have an edge already
+    PolygonMesh mesh = support::mesh_of(
+        support::cube_corners(),
+        {{0, 2, 3, 1}, {0, 1, 5, 4}, {1, 3, 7, 5}, {3, 2, 6, 7}, {2, 0, 4, 6}, {4, 5, 8}, {8, 5, 7, 6, 4}});
+    mesh.positions.emplace_back(0.5, 0, 1);
+    const auto before = mesh.corners;
+    CHECK(drop_straight_vertices(0.1, mesh) == 0);
+    CHECK(mesh.corners == before);
+}
+
 TEST_CASE("facets folded onto each other become one whoever the vertex between them is", "[mesh]") {
     PolygonMesh mesh = cube_with_doublet(0);
     mesh.positions[8] = Vec3(0.5, 0.5, 3); // a sharp roof over the diagonal: its two sides face apart

@@ -1,6 +1,7 @@
 #include "hsdm/pipeline/sparse_areas.hh"
 
 #include "hsdm/mesh/to_mesh.hh"
+#include "hsdm/pipeline/warnings.hh"
 #include "hsdm/reconstruct.hh"
 #include "hsdm/spatial/mesh_distance.hh"
 #include "hsdm/spatial/self_intersections.hh"
@@ -10,6 +11,8 @@
 #include "support/uneven.hh"
 
 #include <catch2/catch.hpp>
+
+#include <algorithm>
 
 using namespace hsdm;
 using namespace hsdm::support;
@@ -40,6 +43,32 @@ double farthest_point(const Solid& solid, const PolygonMesh& mesh) {
 }
 
 } // namespace
+
+TEST_CASE("voxels too small for a surface of these points to close are warned of where they were asked for",
+          "[pipeline]") {
+    const PointCloud even = sample(sphere(1), {.points = 20000});
+    Octree octree;
+    CHECK(voxels_too_small(level_of(even, 6, octree)).count == 0); // 1.1 points to a voxel
+    const OctreeLevel fine = level_of(even, 7, octree);            // 0.27
+    CHECK(voxels_too_small(fine).count > fine.size() / 2);
+    ReconstructOptions options;
+    options.depth = 7;
+    const Report report = reconstruct(even, options).report;
+    const auto said =
+        std::ranges::find(report.warnings, std::string(warning_of::too_small), &Report::Warning::what);
+    REQUIRE(said != report.warnings.end());
+    CHECK(std::abs(said->where.norm() - 1) < 2 * report.grid.voxel_size);
+    options.depth = 6;
+    CHECK(reconstruct(even, options).report.warnings.empty());
+}
+
+TEST_CASE("voxels are too small where points are few, on one side of a cloud", "[pipeline]") {
+    Octree octree;
+    const OctreeLevel level = level_of(thirty_to_one(sphere(1)), 6, octree);
+    const Occurrences small = voxels_too_small(level);
+    CHECK(small.count > 0);
+    CHECK(small.count < level.size() / 2);
+}
 
 TEST_CASE("coarser levels help where points are too few for a level's voxels, and no further", "[pipeline]") {
     Octree octree;

@@ -359,8 +359,7 @@ void return_to(const MethodInput& measured, const Draft& draft, std::span<const 
 
 /// How many coarser levels help out where points are too few for the voxels; none where these were asked for.
 int levels_to_help(const MethodInput& in, const Report& report) {
-    const bool asked_for = in.options.depth || in.options.voxel_size || report.options.contains("levels");
-    return asked_for ? 0 : levels_above_sparse(in.level);
+    return are_voxels_asked_for(in.options, report) ? 0 : levels_above_sparse(in.level);
 }
 
 /// The facets of a level with so many coarser ones to help: from the coarsest on, each has points between

@@ -40,6 +40,10 @@ bool must_estimate(const PointView& cloud, const ReconstructOptions& options) {
     return options.normals == NormalSource::estimate || !cloud.has_normals();
 }
 
+bool are_voxels_asked_for(const ReconstructOptions& options, const Report& report) {
+    return options.depth || options.voxel_size || report.options.contains("levels");
+}
+
 bool wants_adaptive(const ReconstructOptions& options) {
     return options.grid == Grid::adaptive || (options.grid == Grid::automatic && options.max_error);
 }

@@ -10,6 +10,7 @@
 #include "hsdm/pipeline/measure.hh"
 #include "hsdm/pipeline/options.hh"
 #include "hsdm/pipeline/prepared_cloud.hh"
+#include "hsdm/pipeline/sparse_areas.hh"
 #include "hsdm/pipeline/warnings.hh"
 
 #include <tbb/global_control.h>
@@ -20,6 +21,15 @@
 
 namespace hsdm {
 namespace {
+
+/// Warns of voxels that were asked for where they are too small for the points; if not, coarser ones help.
+void warn_of_small_voxels(const OctreeLevel& level, const PreparedCloud& prepared,
+                          const ReconstructOptions& options, Report& report) {
+    if (!are_voxels_asked_for(options, report)) return;
+    Occurrences small = voxels_too_small(level);
+    small.first += prepared.octree.origin;
+    warn(warning_of::too_small, small, prepared.frame, report);
+}
 
 /// Phases 2 and 3 on one level of a prepared cloud; on the `last` level memory is freed as soon as it is no
 /// longer needed.
@@ -41,6 +51,7 @@ void reconstruct_level(InputCloud& cloud, PreparedCloud& prepared, int depth, bo
     report.grid.leaves_per_level.assign(static_cast<std::size_t>(depth) + 1, 0);
     report.grid.leaves_per_level.back() = level.size();
 
+    warn_of_small_voxels(level, prepared, options, report);
     MethodInput input{prepared.frame, *cloud, octree, level,
                       options,        phases, &sets,  prepared.viewpoints_of(*cloud)};
     input.has_layers = prepared.has_layers();

@@ -43,16 +43,25 @@ double mean_points(double points_per_occupied) {
     return mean;
 }
 
-/// Share of the surface that has fewer points to a level's voxels than `fewest`.
-double sparse_share(std::span<const SparseWindow> windows, double fewest) {
-    double sparse = 0, all = 0;
+/// Calls visit(window, points to each voxel that the surface passes, how many it passes) for windows with
+/// points enough to tell.
+template <class Visit>
+void for_telling(std::span<const SparseWindow> windows, const Visit& visit) {
     for (const SparseWindow& window : windows) {
         const auto points = static_cast<double>(window.points);
         if (points < uneven::fewest_of_window) continue;
         const double mean = mean_points(points / static_cast<double>(window.voxels));
-        all += points / mean;
-        if (mean < fewest) sparse += points / mean;
+        visit(window, mean, points / mean);
     }
+}
+
+/// Share of the surface that has fewer points to a level's voxels than `fewest`.
+double sparse_share(std::span<const SparseWindow> windows, double fewest) {
+    double sparse = 0, all = 0;
+    for_telling(windows, [&](const SparseWindow&, double mean, double passed) {
+        all += passed;
+        if (mean < fewest) sparse += passed;
+    });
     return all > 0 ? sparse / all : 0;
 }
 
@@ -135,6 +144,19 @@ void for_places(const PolygonMesh& mesh, std::size_t f, const std::vector<Vec3>&
 }
 
 } // namespace
+
+Occurrences voxels_too_small(const OctreeLevel& level) {
+    double small = 0, all = 0;
+    Occurrences result;
+    for_telling(windows_of(level), [&](const SparseWindow& window, double mean, double passed) {
+        all += passed;
+        if (mean >= uneven::points_to_close) return;
+        small += passed;
+        const VoxelCoord at = morton_decode(window.first_voxel);
+        result.add({window.voxels, Vec3(at[0] + 0.5, at[1] + 0.5, at[2] + 0.5) * level.voxel_size});
+    });
+    return small > uneven::most_sparse * all ? result : Occurrences();
+}
 
 int levels_above_sparse(const OctreeLevel& level) {
     return levels_above_sparse(level.depth, [&](int above) {

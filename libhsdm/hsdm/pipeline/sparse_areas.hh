@@ -2,10 +2,16 @@
 // Where a cloud has too few points for the voxels of a level, and points between them on coarser facets.
 
 #include "hsdm/completion/complete_surface.hh"
+#include "hsdm/core/occurrences.hh"
 #include "hsdm/core/ranks.hh"
 #include "hsdm/octree/octree.hh"
 
 namespace hsdm {
+
+/// Voxels of a level that are too small for the points there: the surface passes so many more than it has
+/// points that it does not close; none if that is so of only a little of it. The first one's middle, relative
+/// to the octree's origin. O(voxels).
+Occurrences voxels_too_small(const OctreeLevel& level);
 
 /// How many levels coarser than this one voxels are such that hardly any of the surface is too sparsely
 /// sampled for them; 0 where that holds for this level, at most uneven::most_levels. O(voxels), parallel.

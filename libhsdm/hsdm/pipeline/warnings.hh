@@ -12,6 +12,7 @@ namespace warning_of {
 inline constexpr const char* intersections = "pairs of facets that pass through each other";
 inline constexpr const char* crowded_sheets = "voxels with walls or gaps too narrow for the points there";
 inline constexpr const char* sides = "pairs of points side by side whose normals face opposite ways";
+inline constexpr const char* too_small = "voxels too small for the points there";
 inline constexpr const char* beyond = "points farther from the mesh than max_error";
 inline constexpr const char* open_loops = "boundary loops that stay open though all were to be closed";
 } // namespace warning_of
