@@ -92,9 +92,9 @@ SkyReading take_layers(const Patches& patches, const LayerReading& layers, Signs
     const std::vector<Views> unbiased = differences.views(sky, walls.components, component_of);
     const Differences skyward(patches, sky, walls, layers.skyward);
     const std::vector<Views> with_sky = skyward.views(sky, walls.components, component_of);
-    // The sky corrects what is known without it; where it turns more than as much again, it made all up.
+    // The sky corrects what is known without it; where it turns half as much again, it made that up.
     differences.take(skyward, [&](std::size_t p) {
-        return 2 * unbiased[component_of(p)].points > with_sky[component_of(p)].points;
+        return 3 * unbiased[component_of(p)].points > 2 * with_sky[component_of(p)].points;
     });
     DisjointSets joined(patches.size());
     for_each_in_order(layers.edges.size(), [&](std::size_t e) {
