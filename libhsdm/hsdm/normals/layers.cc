@@ -27,6 +27,10 @@ struct Views {
         return net > turning::clear_views * static_cast<double>(seeing)
                && net > turning::least_seeing * static_cast<double>(points);
     }
+    /// Do most of those that see it, however few, turn away from it?
+    bool turn_away() const {
+        return static_cast<double>(facing) < -turning::clear_views * static_cast<double>(seeing);
+    }
 };
 
 /// +1 for components whose patches face the sky more than they turn away from it, -1 for the others, 0
@@ -119,7 +123,7 @@ SkyReading take_layers(const Patches& patches, const LayerReading& layers, Signs
     for_differing([&](std::size_t p, Index region, Index component) {
         if (unbiased[component].facing <= 0) return;
         const bool most_are_clear = 2 * clear[component] > of_component[component].points;
-        if (!of_region[region].are_clear() && (all_of_region[region].facing < 0 || !most_are_clear)) return;
+        if (!of_region[region].are_clear() && (all_of_region[region].turn_away() || !most_are_clear)) return;
         walls.sign[p] = static_cast<std::int8_t>(-walls.sign[p]);
         turned[component] = 1;
         result.points += patches.counts[p];
