@@ -4,6 +4,9 @@
 
 #include <catch2/catch.hpp>
 
+#include <algorithm>
+#include <vector>
+
 using namespace hsdm;
 
 namespace {
@@ -14,12 +17,15 @@ struct Votes {
 
 /// Patches of a scan with exact normals, so that all are outward, and what they see.
 struct Seen {
-    explicit Seen(const PointCloud& cloud) : octree(build_octree(cloud)) {
+    explicit Seen(const PointCloud& cloud, bool sky = false) : octree(build_octree(cloud)) {
         EstimatedNormals exact;
         exact.normals = octree.normals;
         exact.tolerance.assign(octree.size(), 0.01);
-        patches = build_patches(octree, find_neighbors(octree), exact);
-        view = view_outside(octree, patches, estimate_spacing(octree));
+        const Neighbors neighbors = find_neighbors(octree);
+        patches = build_patches(octree, neighbors, exact);
+        std::vector<std::uint8_t> beside;
+        if (sky) beside = sheets_beside(octree, neighbors, exact, patches);
+        view = view_outside(octree, patches, estimate_spacing(octree), {.beside = beside});
     }
     Octree octree;
     Patches patches;
@@ -77,4 +83,21 @@ TEST_CASE("the sides of a plate face each other, faces that meet in an obtuse cr
     const support::Solid octagon = bar & bar.placed(support::turned(Vec3(0, 0, 1), 0.7));
     // Rough normals, as estimated ones are near creases.
     CHECK(facing(support::sample(octagon, {.points = 10000, .normal_noise = 0.3})).wrong == 0);
+}
+
+TEST_CASE("of a plate no sky is clear, of a solid all that is seen of it is", "[normals]") {
+    const Seen plate(support::sample(support::box(Vec3(2, 2, 0.02)), {.points = 20000}), true);
+    std::size_t seeing = 0, clear = 0;
+    for (std::size_t p = 0; p < plate.patches.size(); ++p) {
+        const Vec3& c = plate.patches.centroids[p];
+        const bool at_rim = std::min({c[0], c[1], 2 - c[0], 2 - c[1]}) < 0.2;
+        if (at_rim || plate.view.sky[p] == 0) continue;
+        CHECK(plate.view.sky[p] == 1);
+        ++seeing, clear += plate.view.clear_sky[p] != 0;
+    }
+    CHECK(seeing > 500);
+    CHECK(clear == 0);
+
+    const Seen ball(support::sample(support::sphere(1), {.points = 20000}), true);
+    for (std::size_t p = 0; p < ball.patches.size(); ++p) CHECK(ball.view.clear_sky[p] == ball.view.sky[p]);
 }

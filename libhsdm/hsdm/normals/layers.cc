@@ -27,6 +27,10 @@ struct Views {
         return net > turning::clear_views * static_cast<double>(seeing)
                && net > turning::least_seeing * static_cast<double>(points);
     }
+    /// Do most of those that see it, however few, turn away from it?
+    bool turn_away() const {
+        return static_cast<double>(facing) < -turning::clear_views * static_cast<double>(seeing);
+    }
 };
 
 /// +1 for components whose patches face the sky more than they turn away from it, -1 for the others, 0
@@ -43,18 +47,18 @@ std::vector<std::int8_t> outward_signs(const Patches& patches, const std::vector
     return outward;
 }
 
-/// Where signs of walls differ from those of layers, and for which of them the sky is there.
+/// Where signs of walls differ from those of layers, and what these see of the sky there.
 class Differences {
 public:
     Differences(const Patches& patches, const std::vector<std::int8_t>& sky, const Signs& walls,
                 const Signs& layers)
-        : patches_(patches), faces_(large_vector<std::int8_t>(patches.size())), differ_(faces_.size()) {
+        : patches_(patches), sign_(large_vector<std::int8_t>(patches.size())), differ_(sign_.size()) {
         const std::vector<std::int8_t> out = outward_signs(patches, sky, walls),
                                        layers_out = outward_signs(patches, sky, layers);
         for_each_index(patches.size(), chunks::light, [&](Index p) {
             const int sign = layers.sign[p] * layers_out[layers.component[p]];
             differ_[p] = out[walls.component[p]] * walls.sign[p] * sign < 0;
-            faces_[p] = static_cast<std::int8_t>(sky[p] * sign);
+            sign_[p] = static_cast<std::int8_t>(sign);
         });
     }
 
@@ -63,22 +67,23 @@ public:
     template <class Takes>
     void take(const Differences& other, const Takes& takes) {
         for_each_index(patches_.size(), chunks::light, [&](Index p) {
-            if (takes(p)) faces_[p] = other.faces_[p], differ_[p] = other.differ_[p];
+            if (takes(p)) sign_[p] = other.sign_[p], differ_[p] = other.differ_[p];
         });
     }
     /// What those of each group see; group_of(patch) is its number.
     template <class GroupOf>
-    std::vector<Views> views(std::size_t groups, const GroupOf& group_of) const {
+    std::vector<Views> views(const std::vector<std::int8_t>& sky, std::size_t groups,
+                             const GroupOf& group_of) const {
         std::vector<Views> result = large_vector<Views>(groups);
         for_each_in_order(patches_.size(), [&](std::size_t p) {
-            if (at(p)) result[group_of(p)].add(patches_.counts[p], faces_[p]);
+            if (at(p)) result[group_of(p)].add(patches_.counts[p], sky[p] * sign_[p]);
         });
         return result;
     }
 
 private:
     const Patches& patches_;
-    std::vector<std::int8_t> faces_; // which way layers face: +1 the sky, -1 away from it
+    std::vector<std::int8_t> sign_; // of layers
     std::vector<std::uint8_t> differ_;
 };
 
@@ -86,13 +91,14 @@ private:
 
 SkyReading take_layers(const Patches& patches, const LayerReading& layers, Signs& walls) {
     const auto component_of = [&](std::size_t p) { return walls.component[p]; };
-    Differences differences(patches, layers.sky, walls, layers.signs);
-    const std::vector<Views> unbiased = differences.views(walls.components, component_of);
-    const Differences skyward(patches, layers.sky, walls, layers.skyward);
-    const std::vector<Views> with_sky = skyward.views(walls.components, component_of);
-    // The sky corrects what is known without it; where it turns more than as much again, it made all up.
+    const std::vector<std::int8_t>& sky = layers.clear_sky;
+    Differences differences(patches, sky, walls, layers.signs);
+    const std::vector<Views> unbiased = differences.views(sky, walls.components, component_of);
+    const Differences skyward(patches, sky, walls, layers.skyward);
+    const std::vector<Views> with_sky = skyward.views(sky, walls.components, component_of);
+    // The sky corrects what is known without it; where it turns half as much again, it made that up.
     differences.take(skyward, [&](std::size_t p) {
-        return 2 * unbiased[component_of(p)].points > with_sky[component_of(p)].points;
+        return 3 * unbiased[component_of(p)].points > 2 * with_sky[component_of(p)].points;
     });
     DisjointSets joined(patches.size());
     for_each_in_order(layers.edges.size(), [&](std::size_t e) {
@@ -100,28 +106,29 @@ SkyReading take_layers(const Patches& patches, const LayerReading& layers, Signs
         if (edge.weight != 0 && differences.at(edge.a) && differences.at(edge.b)) joined.join(edge.a, edge.b);
     });
     const auto region_of = [&](std::size_t p) { return joined.find(static_cast<Index>(p)); };
-    const std::vector<Views> of_region = differences.views(patches.size(), region_of),
-                             of_component = differences.views(walls.components, component_of);
+    const std::vector<Views> of_region = differences.views(sky, patches.size(), region_of),
+                             all_of_region = differences.views(layers.sky, patches.size(), region_of),
+                             of_component = differences.views(sky, walls.components, component_of);
     const auto for_differing = [&](const auto& work) {
         for_each_in_order(patches.size(), [&](std::size_t p) {
-            if (differences.at(p)) work(p, of_region[region_of(p)], component_of(p));
+            if (differences.at(p)) work(p, region_of(p), component_of(p));
         });
     };
     std::vector<std::size_t> clear(walls.components, 0); // points
-    for_differing([&](std::size_t p, const Views& region, Index component) {
-        if (region.are_clear()) clear[component] += patches.counts[p];
+    for_differing([&](std::size_t p, Index region, Index component) {
+        if (of_region[region].are_clear()) clear[component] += patches.counts[p];
     });
     SkyReading result;
     std::vector<std::uint8_t> turned(walls.components, 0);
-    for_differing([&](std::size_t p, const Views& region, Index component) {
+    for_differing([&](std::size_t p, Index region, Index component) {
         if (unbiased[component].facing <= 0) return;
         const bool most_are_clear = 2 * clear[component] > of_component[component].points;
-        if (!region.are_clear() && (region.facing < 0 || !most_are_clear)) return;
+        if (!of_region[region].are_clear() && (all_of_region[region].turn_away() || !most_are_clear)) return;
         walls.sign[p] = static_cast<std::int8_t>(-walls.sign[p]);
         turned[component] = 1;
         result.points += patches.counts[p];
     });
-    result.outward = outward_signs(patches, layers.sky, walls);
+    result.outward = outward_signs(patches, sky, walls);
     for (std::size_t c = 0; c < turned.size(); ++c)
         if (turned[c] == 0) result.outward[c] = 0;
     return result;

@@ -68,19 +68,20 @@ LayerReading read_as_layers(const Octree& octree, const Neighbors& neighbors,
     LayerReading layers;
     layers.edges = layer_evidence(octree, neighbors, estimate, patches);
     const std::vector<std::uint8_t> beside = sheets_beside(octree, neighbors, estimate, patches);
-    layers.sky = view_outside(octree, patches, estimate_spacing(octree), {.beside = beside}).sky;
+    OutsideView view = view_outside(octree, patches, estimate_spacing(octree), {.beside = beside});
+    layers.sky = std::move(view.sky), layers.clear_sky = std::move(view.clear_sky);
     return layers;
 }
 
-/// Reads the evidence alone and with the sky, which is outside. An edge counts by all that is said of it,
-/// however that was divided.
+/// Reads the evidence alone and with the clear sky, which is outside. An edge counts by all that is said of
+/// it, however that was divided.
 SkyReading layers_taken(const Patches& patches, LayerReading&& layers, Signs& signs) {
     merge_edges(layers.edges, patches.size());
     layers.signs = agglomerate(patches.size(), layers.edges);
     std::vector<SignedEdge> edges;
     reserve_large(edges, layers.edges.size() + patches.size());
     append_large(edges, layers.edges);
-    add_views(layers.sky, patches, edges);
+    add_views(layers.clear_sky, patches, edges);
     layers.skyward = agglomerate(patches.size() + 1, std::move(edges), static_cast<Index>(patches.size()));
     return take_layers(patches, layers, signs);
 }

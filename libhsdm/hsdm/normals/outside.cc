@@ -214,6 +214,73 @@ std::vector<std::int8_t> sky_of(const EmptySpace& space, const std::vector<Sight
     return result;
 }
 
+/// What the points of patches in a voxel see of the sky: the sum of the ways that lead to it.
+struct SkyOfVoxel {
+    Vec3 ways{0, 0, 0};
+    double points = 0;
+
+    void add(const Vec3& way, double count) { ways += count * way, points += count; }
+};
+
+/// The sky of all voxels that patches lie in.
+class SkyOfVoxels {
+public:
+    SkyOfVoxels(const EmptySpace& space, const Patches& patches, const std::vector<std::int8_t>& sky,
+                double voxel_size)
+        : space_(space),
+          number_(space.side() * space.side() * space.side(), no_index),
+          inverse_size_(1 / voxel_size) {
+        for_each_in_order(sky.size(), [&](std::size_t p) {
+            if (sky[p] == 0) return;
+            Index& number = number_[space_.cell(voxel_at(patches.centroids[p]))];
+            if (number == no_index) {
+                number = static_cast<Index>(voxels_.size());
+                voxels_.emplace_back();
+            }
+            voxels_[number].add(sky[p] * patches.normals[p], patches.counts[p]);
+        });
+    }
+
+    /// Is most of what is seen of the sky around a place on that side? A layer may lie in the next voxel.
+    bool is_clear(const Vec3& place, const Vec3& way) const {
+        const VoxelCoord c = voxel_at(place);
+        double along = 0, points = 0;
+        for (std::int32_t z = -1; z <= 1; ++z)
+            for (std::int32_t y = -1; y <= 1; ++y)
+                for (std::int32_t x = -1; x <= 1; ++x) {
+                    const Index v = number_[space_.cell(VoxelCoord{c[0] + x, c[1] + y, c[2] + z})];
+                    if (v != no_index) along += voxels_[v].ways | way, points += voxels_[v].points;
+                }
+        return along >= turning::clear_views * points;
+    }
+
+private:
+    VoxelCoord voxel_at(const Vec3& p) const {
+        const auto last = static_cast<std::int32_t>(space_.side()) - 3; // of the cube, without its margin
+        VoxelCoord c;
+        for (unsigned k = 0; k < 3; ++k)
+            c[k] = std::clamp(static_cast<std::int32_t>(std::floor(p[k] * inverse_size_)), 0, last);
+        return c;
+    }
+
+    const EmptySpace& space_;
+    std::vector<Index> number_; // per cell of the space
+    std::vector<SkyOfVoxel> voxels_;
+    double inverse_size_;
+};
+
+std::vector<std::int8_t> clear_sky_of(const EmptySpace& space, const Patches& patches,
+                                      const std::vector<std::int8_t>& sky, double voxel_size) {
+    const SkyOfVoxels around(space, patches, sky, voxel_size);
+    std::vector<std::int8_t> clear = large_vector<std::int8_t>(sky.size());
+    for_each_index(sky.size(), chunks::light, [&](Index p) {
+        const bool is_clear =
+            sky[p] != 0 && around.is_clear(patches.centroids[p], sky[p] * patches.normals[p]);
+        clear[p] = is_clear ? sky[p] : std::int8_t{0};
+    });
+    return clear;
+}
+
 } // namespace
 
 int depth_of_space(double cube_extent, double spacing, const OutsideOptions& options) {
@@ -235,7 +302,7 @@ std::vector<Sights> look_around(const Octree& octree, const OctreeLevel& level, 
 }
 
 OutsideView judge_sights(const EmptySpace& space, const std::vector<Sights>& seen, const Patches& patches,
-                         std::span<const std::uint8_t> beside) {
+                         double voxel_size, std::span<const std::uint8_t> beside) {
     const std::vector<std::int8_t> kind = classify(space.regions(), seen, patches);
     OutsideView result;
     assign_large(result.votes, patches.size(), 0);
@@ -245,7 +312,9 @@ OutsideView judge_sights(const EmptySpace& space, const std::vector<Sights>& see
         if (front * kind[seen[p][1].region] == -1) result.votes[p] = front;
     });
     result.facing = facing_patches(seen, patches);
-    if (!beside.empty()) result.sky = sky_of(space, seen, patches, beside);
+    if (beside.empty()) return result;
+    result.sky = sky_of(space, seen, patches, beside);
+    result.clear_sky = clear_sky_of(space, patches, result.sky, voxel_size);
     return result;
 }
 
@@ -255,7 +324,7 @@ OutsideView view_outside(const Octree& octree, const Patches& patches, double sp
     const EmptySpace space(level.codes, level.depth);
     const auto all = static_cast<Index>(patches.size());
     return judge_sights(space, look_around(octree, level, space, patches, spacing, 0, all), patches,
-                        options.beside);
+                        level.voxel_size, options.beside);
 }
 
 } // namespace hsdm

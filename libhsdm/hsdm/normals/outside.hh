@@ -28,6 +28,9 @@ struct OutsideView {
     /// Per patch, if asked for: +1 if most of the sky is open in front of it and not behind it, -1 the other
     /// way round, else 0; weighed by the cosine
     std::vector<std::int8_t> sky;
+    /// The same without patches on sheets beside each other that are open to the sky on both sides: those are
+    /// a plate, or layers of a surface over a solid whose underside nobody scanned
+    std::vector<std::int8_t> clear_sky;
 };
 
 /// Finds the connected regions of empty voxels. One that can be reached from outside the box is outside; a
@@ -55,8 +58,8 @@ std::vector<Sights> look_around(const Octree& octree, const OctreeLevel& level, 
 inline int depth_of_sight() {
     return views::steps / 2 + 2; // as steps are halves of a voxel, and a centroid lies anywhere in one
 }
-/// What the sights of all patches tell.
+/// What the sights of all patches tell. `voxel_size`: of the space, where the sky is asked for.
 OutsideView judge_sights(const EmptySpace& space, const std::vector<Sights>& seen, const Patches& patches,
-                         std::span<const std::uint8_t> beside = {});
+                         double voxel_size, std::span<const std::uint8_t> beside = {});
 
 } // namespace hsdm

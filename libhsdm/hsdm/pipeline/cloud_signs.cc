@@ -41,15 +41,19 @@ void refuse_large(std::size_t patches, std::size_t edges, std::size_t memory, co
                     + " MB, which is held in memory; give --memory that much, or a cloud with normals");
 }
 
-/// The empty space of the whole cloud.
-EmptySpace space_of(const ScratchCloud& cloud, double spacing, std::size_t most) {
+/// The empty space of the whole cloud, and the edge of its voxels.
+struct WholeSpace {
+    EmptySpace space;
+    double voxel_size;
+};
+WholeSpace space_of(const ScratchCloud& cloud, double spacing, std::size_t most) {
     const int depth = depth_of_space(cloud.cube_extent(), spacing);
     std::vector<MortonCode> codes;
     cloud.for_groups(most,
                      [&](const Octree& part) { append_large(codes, extract_level(part, depth).codes); });
     std::vector<MortonCode> all = values_of_all(cloud.ranks(), codes);
     sort_unique(all);
-    return EmptySpace(all, depth);
+    return {EmptySpace(all, depth), cloud.cube_extent() / static_cast<double>(1u << depth)};
 }
 
 /// Looks at the parts for what tells the sides.
@@ -205,19 +209,25 @@ WholeEvidence whole_evidence(SideEvidence& all, bool is_seen, SignsOfAll& result
 }
 
 /// None if it takes the evidence of layers, which `all` has not.
-std::optional<SignsOfAll> signs_of(SideEvidence&& all, const EmptySpace& space, bool may_be_layers,
+std::optional<SignsOfAll> signs_of(SideEvidence&& all, const WholeSpace& around, bool may_be_layers,
                                    const OrientOptions& options) {
     SignsOfAll result;
     const WholeEvidence whole = whole_evidence(all, !options.viewpoints.sensors.empty(), result);
     bool lacks_layers = false;
-    PatchSigns signs = sign_patches(
-        whole.patches, std::move(all.edges), judge_sights(space, whole.seen, whole.patches), whole.seen_by,
-        options, [&]() -> LayerReading {
-            lacks_layers = !may_be_layers;
-            std::vector<std::int8_t> sky(whole.patches.size(), 0);
-            if (may_be_layers) sky = judge_sights(space, whole.seen, whole.patches, whole.beside).sky;
-            return {.edges = std::move(all.layers), .sky = std::move(sky), .signs = {}, .skyward = {}};
-        });
+    const auto read_layers = [&] {
+        lacks_layers = !may_be_layers;
+        LayerReading layers;
+        layers.edges = std::move(all.layers);
+        layers.sky.assign(whole.patches.size(), 0), layers.clear_sky = layers.sky;
+        if (lacks_layers) return layers;
+        OutsideView view =
+            judge_sights(around.space, whole.seen, whole.patches, around.voxel_size, whole.beside);
+        layers.sky = std::move(view.sky), layers.clear_sky = std::move(view.clear_sky);
+        return layers;
+    };
+    PatchSigns signs = sign_patches(whole.patches, std::move(all.edges),
+                                    judge_sights(around.space, whole.seen, whole.patches, around.voxel_size),
+                                    whole.seen_by, options, read_layers);
     if (lacks_layers) return std::nullopt;
     result.sign = std::move(signs.sign);
     result.report = signs.report;
@@ -225,7 +235,7 @@ std::optional<SignsOfAll> signs_of(SideEvidence&& all, const EmptySpace& space, 
 }
 
 /// What the first rank finds, if it does.
-std::optional<SignsOfAll> signs_of_all(SideEvidence&& own, const EmptySpace& space, bool may_be_layers,
+std::optional<SignsOfAll> signs_of_all(SideEvidence&& own, const WholeSpace& space, bool may_be_layers,
                                        Ranks& ranks, std::size_t memory, const OrientOptions& options) {
     SideEvidence all = gathered(std::move(own), ranks, memory);
     Ranks::Bytes bytes;
@@ -295,14 +305,14 @@ SignsOfAll find_signs(ScratchCloud& cloud, const CloudSurvey& survey, const Esti
                       const OrientOptions& options, const CloudPasses& passes, std::size_t memory,
                       PartStore& store) {
     const double spacing = estimate_spacing(survey.sums.counts(), cloud.cube_extent());
-    const EmptySpace space = space_of(cloud, spacing, passes.most_points);
+    const WholeSpace whole = space_of(cloud, spacing, passes.most_points);
     const std::vector<VoxelRange> ranges = passes.plan(cloud, passes.ghost_voxels);
     for (bool may_be_layers = false;; may_be_layers = true) {
-        EvidencePass pass(how, options.viewpoints, space, spacing, may_be_layers, memory, store);
+        EvidencePass pass(how, options.viewpoints, whole.space, spacing, may_be_layers, memory, store);
         for_parts(cloud, survey.sums, ranges, store.widths,
                   [&](const CloudPart& part) { return pass.add(part); });
         if (auto signs =
-                signs_of_all(std::move(pass.evidence), space, may_be_layers, cloud.ranks(), memory, options))
+                signs_of_all(std::move(pass.evidence), whole, may_be_layers, cloud.ranks(), memory, options))
             return std::move(*signs);
     }
 }
