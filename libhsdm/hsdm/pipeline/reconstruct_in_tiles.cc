@@ -308,7 +308,7 @@ private:
     }
 
     CloudPasses passes_of(std::size_t group) const {
-        return {[this, group](const ScratchCloud& cloud, int ghost) { return plan(cloud, group, ghost); },
+        return {[group](const ScratchCloud& cloud, int ghost) { return plan(cloud, group, ghost); },
                 tiles_.ghost_voxels, group};
     }
 
