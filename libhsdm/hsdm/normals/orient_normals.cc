@@ -130,8 +130,12 @@ PatchSigns sign_patches(const Patches& patches, std::vector<SignedEdge> edges, c
     Signs signs = agglomerate(patches.size() + 1, std::move(edges), outside);
     const bool scanned = std::ranges::any_of(seen_by, [](float vote) { return vote != 0; });
     SkyReading sky;
-    if (!scanned && signs.contradicted > turning::least_contradicted)
-        sky = layers_taken(patches, evidence_of_layers(), signs);
+    if (!scanned && signs.contradicted > turning::least_contradicted) {
+        LayerReading layers = evidence_of_layers();
+        // Normals that came with the points tell layers by themselves; what is open on both sides are walls.
+        if (options.signs_count) layers.clear_sky = layers.sky;
+        sky = layers_taken(patches, std::move(layers), signs);
+    }
     std::vector<std::int8_t> turn = free_signs(patches, signs, options);
     std::vector<std::uint8_t> is_known(turn.size(), 0); // by views or by the sky
     const auto decide = [&](std::size_t component, std::int8_t sign) {
