@@ -29,6 +29,18 @@ double farthest_vertex(const PolygonMesh& mesh, const Solid& solid) {
     return farthest;
 }
 
+std::string difference_of_bits(const PolygonMesh& one, const PolygonMesh& other) {
+    if (!are_same_bits(one.positions, other.positions)) return "positions";
+    if (one.corners != other.corners || one.first != other.first) return "facets";
+    if (one.sharp_edges != other.sharp_edges) return "sharp edges";
+    if (one.properties.size() != other.properties.size()) return "properties";
+    for (std::size_t i = 0; i < one.properties.size(); ++i)
+        if (one.properties[i].name != other.properties[i].name
+            || !are_same_bits(one.properties[i].values, other.properties[i].values))
+            return one.properties[i].name;
+    return {};
+}
+
 std::string difference_of_turned(const PolygonMesh& one, const PolygonMesh& other) {
     if (one.vertex_count() != other.vertex_count() || one.facet_count() != other.facet_count())
         return std::to_string(one.vertex_count()) + " vertices and " + std::to_string(one.facet_count())

@@ -21,6 +21,9 @@ bool are_same_bits(const std::vector<T>& a, const std::vector<T>& b) {
     return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0;
 }
 
+/// Empty if two meshes are the same to the last bit, with sharp edges and properties; otherwise what differs.
+std::string difference_of_bits(const PolygonMesh& one, const PolygonMesh& other);
+
 /// The largest distance of a vertex from the solid's boundary.
 double farthest_vertex(const PolygonMesh& mesh, const Solid& solid);
 

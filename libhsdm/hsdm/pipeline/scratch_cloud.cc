@@ -369,7 +369,7 @@ void ScratchCloud::for_groups(std::size_t most, const std::function<void(const O
 
 void ScratchCloud::sort_in_cells(std::size_t most, const std::function<void(const Octree&)>& visit) {
     if (in_order_) return for_groups(most, visit);
-    ScratchCloud next = without_points();
+    ScratchCloud next = emptied(has_normals_);
     for_groups(most, [&](const Octree& part) {
         for_each_in_order(part.size(), [&](std::size_t i) { next.add(part, i); });
         visit(part);
@@ -483,14 +483,9 @@ PointRow ScratchCloud::row_at(const Octree& octree, std::size_t point) {
     return {p[0], p[1], p[2], n[0], n[1], n[2]};
 }
 
-ScratchCloud ScratchCloud::without_points() const {
+ScratchCloud ScratchCloud::emptied(bool has_normals) const {
     ScratchCloud next(*this, bounds(), cube_extent(), depth_);
     next.begins_ = begins_;
-    return next;
-}
-
-ScratchCloud ScratchCloud::emptied(bool has_normals) const {
-    ScratchCloud next = without_points();
     next.has_normals_ = has_normals;
     return next;
 }

@@ -109,7 +109,6 @@ public:
 private:
     /// Without points yet: those of another one, in another cube.
     ScratchCloud(const ScratchCloud& before, const Box& bounds, double extent, int depth);
-    ScratchCloud without_points() const;
     /// The cell of a position relative to the cube.
     MortonCode cell_of(const Vec3& relative) const;
     template <class Place>
