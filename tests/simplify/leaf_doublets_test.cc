@@ -33,6 +33,20 @@ TEST_CASE("two facets round one vertex become one", "[simplify]") {
     CHECK(t.euler == 2);
 }
 
+TEST_CASE("a vertex between two facets stays where it is to", "[simplify]") {
+    PolygonMesh mesh = cube_without_top();
+    mesh.positions.emplace_back(0.5, 0.5, 1);
+    mesh.add_facet(std::array<Index, 4>{4, 5, 7, 8});
+    mesh.add_facet(std::array<Index, 4>{8, 7, 6, 4});
+    std::vector<std::uint8_t> stays(9, 0);
+    stays[8] = 1;
+    CHECK(dissolve_doublets(mesh, stays)[8] == 8);
+    CHECK(mesh.facet_count() == 7);
+    stays[8] = 0;
+    CHECK(dissolve_doublets(mesh, stays)[8] != 8);
+    CHECK(mesh.facet_count() == 6);
+}
+
 TEST_CASE("a flap goes, and one vertex stands for those between its facets", "[simplify]") {
     PolygonMesh mesh = cube_without_top();
     mesh.positions.emplace_back(1.4, 0.8, 1); // the top reaches out to these, and a facet lies back under it

@@ -1,5 +1,7 @@
 #include "hsdm/simplify/nonmanifold_vertices.hh"
 
+#include "support/meshes.hh"
+
 #include <catch2/catch.hpp>
 
 #include <array>
@@ -54,6 +56,20 @@ TEST_CASE("trouble is found where it is", "[simplify]") {
     add(back_to_back, {0, 1, 2});
     add(back_to_back, {2, 1, 0});
     CHECK(nonmanifold_vertices(back_to_back) == std::vector<Index>{0, 1, 2});
+}
+
+TEST_CASE("vertices of two facets are trouble unless they may be", "[simplify]") {
+    PolygonMesh cube = support::mesh_of(
+        support::cube_corners(),
+        {{0, 2, 3, 1}, {0, 1, 5, 4}, {1, 3, 7, 5}, {3, 2, 6, 7}, {2, 0, 4, 6}, {4, 5, 7, 8}, {8, 7, 6, 4}});
+    cube.positions.emplace_back(0.5, 0.5, 1.1);
+    std::vector<std::uint8_t> may(9, 0);
+    CHECK(nonmanifold_vertices(cube) == std::vector<Index>{8});
+    CHECK(nonmanifold_vertices(cube, may) == std::vector<Index>{8});
+    may[8] = 1;
+    CHECK(nonmanifold_vertices(cube, may).empty());
+    cube.corners.back() = 5; // a facet turned: 5 in place of 4
+    CHECK_FALSE(nonmanifold_vertices(cube, may).empty());
 }
 
 TEST_CASE("a side without length is trouble, whatever area its facet has", "[simplify]") {

@@ -5,6 +5,7 @@
 #include "hsdm/spatial/mesh_distance.hh"
 #include "hsdm/spatial/self_intersections.hh"
 #include "support/check.hh"
+#include "support/meshes.hh"
 #include "support/sample.hh"
 
 #include <catch2/catch.hpp>
@@ -75,6 +76,31 @@ TEST_CASE("coarse meshes are closed 2-manifolds of the fine one's topology withi
                 CHECK(static_cast<double>(after.faces) <= e.most_faces * static_cast<double>(before.faces));
         }
     }
+}
+
+TEST_CASE("a vertex that only two facets of the fine mesh have stays where they would pass through something "
+          "as one",
+          "[simplify]") {
+    // The top of a cube is two facets round a vertex far below it, and a tetrahedron stands out of the
+    // hollow.
+    PolygonMesh fine = support::mesh_of(
+        support::cube_corners(),
+        {{0, 2, 3, 1}, {0, 1, 5, 4}, {1, 3, 7, 5}, {3, 2, 6, 7}, {2, 0, 4, 6}, {4, 5, 7, 8}, {8, 7, 6, 4}});
+    fine.positions.emplace_back(0.5, 0.5, 0.4);
+    for (const Vec3& p : {Vec3(0, 0, 0), Vec3(0.1, 0, 0), Vec3(0, 0.1, 0), Vec3(0, 0, 0.5)})
+        fine.positions.push_back(Vec3(0.45, 0.48, 0.7) + p);
+    for (const auto& f : {std::array<Index, 3>{9, 11, 10}, {9, 10, 12}, {10, 11, 12}, {11, 9, 12}})
+        fine.add_facet(f);
+    REQUIRE(find_self_intersections(fine).facet_pairs.empty());
+    REQUIRE(faults(fine) == "");
+    std::vector<Vec3> points = fine.positions;
+    points.erase(points.begin() + 8); // with it the whole fine mesh would be the result
+    const AdaptiveMesh result = simplify(fine, points, 2, 5, {.max_error = 1e-3});
+    CHECK(find_self_intersections(result.mesh).facet_pairs.empty());
+    CHECK(result.intersecting == 0);
+    CHECK(faults(result.mesh) == "");
+    CHECK(result.points_beyond == 0);
+    CHECK(std::ranges::find(result.mesh.positions, fine.positions[8]) != result.mesh.positions.end());
 }
 
 TEST_CASE("leaves, levels and vertices belong to the mesh", "[simplify]") {

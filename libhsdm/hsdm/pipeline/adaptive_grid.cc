@@ -41,6 +41,7 @@ PolygonMesh adaptive_grid(const MethodInput& in, std::span<const Vec3> points, c
                  {.max_error = bound, .measure = in.options.measure}, known.cells ? &*known.cells : nullptr);
     known = {};
     if (coarse.intersecting > 0) known.intersections = facets_that_meet(coarse.mesh);
+    report.rejected["intersections_left"] = coarse.intersecting;
     report.grid.kind = "adaptive";
     report.grid.leaves_per_level = coarse.leaves_per_level;
     report.grid.balance_splits = coarse.balance_splits;

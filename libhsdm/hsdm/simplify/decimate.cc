@@ -2,6 +2,7 @@
 
 #include "hsdm/core/chunks.hh"
 #include "hsdm/core/interruption.hh"
+#include "hsdm/mesh/facet_unions.hh"
 #include "hsdm/mesh/part_of.hh"
 #include "hsdm/simplify/collapse_by_distance.hh"
 #include "hsdm/simplify/collapse_by_planes.hh"
@@ -50,7 +51,8 @@ public:
         : input_(clustered),
           checks_(checks),
           options_(options),
-          tolerance_(clustered.mesh.vertex_count(), checks.envelope().tolerance) {}
+          tolerance_(clustered.mesh.vertex_count(), checks.envelope().tolerance),
+          doublets_(vertices_of_two_facets(clustered.mesh)) {}
 
     DecimatedMesh run(const DecimationStep& step) {
         for (int round = 0; round < options_.rounds; ++round) {
@@ -67,11 +69,29 @@ public:
         }
         result_.mesh = copy_of(input_.mesh);
         result_.vertex = indices_below(input_.mesh.vertex_count());
+        has_merged_.assign(input_.mesh.vertex_count(), 0);
         result_.faults = find_faults().counts;
         return std::move(result_);
     }
 
 private:
+    static std::vector<Index> vertices_of_two_facets(const PolygonMesh& mesh) {
+        const VertexFacets at = facets_at_vertices(mesh);
+        return indices_where(mesh.vertex_count(), chunks::light, [&](Index v) { return at.count[v] == 2; });
+    }
+
+    /// Per vertex of the result, may it have only two facets, as it had from the beginning? Empty if none
+    /// may.
+    std::vector<std::uint8_t> doublets() const {
+        if (doublets_.empty()) return {};
+        std::vector<std::uint8_t> marked(result_.mesh.vertex_count(), 0);
+        for (Index source : doublets_) {
+            const Index v = result_.vertex[source];
+            marked[v] |= !has_merged_[v];
+        }
+        return marked;
+    }
+
     void merge_once(const DecimationStep& step) {
         auto [mesh, stands_for, flipped] = step.merge(tolerance_);
         result_.mesh = std::move(mesh);
@@ -107,7 +127,7 @@ private:
         Findings found;
         Faults faults;
         run_both([&] { found = checks_.look_at(mesh); },
-                 [&] { faults.vertices = nonmanifold_vertices(mesh); });
+                 [&] { faults.vertices = nonmanifold_vertices(mesh, doublets()); });
         faults.manifold = faults.vertices.empty();
         faults.counts = found.count();
         for (Index v : found.far.fine_vertices) {
@@ -209,6 +229,7 @@ private:
     MeshChecks& checks_;
     const DecimateOptions& options_;
     std::vector<double> tolerance_;        // per source
+    std::vector<Index> doublets_;          // sources with two facets
     std::vector<std::uint8_t> has_merged_; // per vertex of the result
     RemeshedGroups remeshed_;              // results of the round before
     DecimatedMesh result_;

@@ -5,10 +5,13 @@
 #include "hsdm/mesh/facet_unions.hh"
 #include "hsdm/simplify/constants.hh"
 
+#include <algorithm>
+
 namespace hsdm {
 namespace {
 
-std::size_t dissolve_once(PolygonMesh& mesh, std::vector<Index>& stands_for) {
+std::size_t dissolve_once(std::span<const std::uint8_t> stays, PolygonMesh& mesh,
+                          std::vector<Index>& stands_for) {
     const VertexFacets at = facets_at_vertices(mesh);
     FacetUnions unions(mesh);
     for_each_in_order(mesh.vertex_count(), [&](std::size_t i) {
@@ -17,6 +20,8 @@ std::size_t dissolve_once(PolygonMesh& mesh, std::vector<Index>& stands_for) {
         if (at.count[v] != 2 || !unions.is_free(f, g)) return;
         UnitedFacets whole = united(mesh, at, v);
         std::vector<Index>& ring = whole.ring;
+        if (!stays.empty() && std::ranges::any_of(whole.between, [&](Index u) { return stays[u] != 0; }))
+            return;
         // Two triangles back to back may be removed only if they are not all there is at their other
         // vertices.
         if (ring.empty() || (ring.size() < 3 && (at.count[ring.front()] < 3 || at.count[ring.back()] < 3)))
@@ -29,9 +34,9 @@ std::size_t dissolve_once(PolygonMesh& mesh, std::vector<Index>& stands_for) {
 
 } // namespace
 
-std::vector<Index> dissolve_doublets(PolygonMesh& mesh) {
+std::vector<Index> dissolve_doublets(PolygonMesh& mesh, std::span<const std::uint8_t> stays) {
     std::vector<Index> stands_for = indices_below(mesh.vertex_count());
-    for (int round = 0; round < enough_rounds && dissolve_once(mesh, stands_for) > 0; ++round) {
+    for (int round = 0; round < enough_rounds && dissolve_once(stays, mesh, stands_for) > 0; ++round) {
     }
     for_each_in_order(stands_for.size(), [&](std::size_t i) {
         Index& v = stands_for[i];

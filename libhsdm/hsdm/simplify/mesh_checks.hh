@@ -19,6 +19,7 @@ struct Findings {
     FarPlaces far;
     FarPoints far_points;
 
+    bool is_empty() const { return intersecting.empty() && far.size() == 0 && far_points.points.empty(); }
     FaultCounts count() const { return {intersecting.size(), far.size(), far_points.points.size()}; }
 };
 

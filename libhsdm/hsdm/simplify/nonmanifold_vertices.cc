@@ -29,7 +29,7 @@ std::vector<Index> flat_facets(const PolygonMesh& mesh) {
 
 } // namespace
 
-std::vector<Index> nonmanifold_vertices(const PolygonMesh& mesh) {
+std::vector<Index> nonmanifold_vertices(const PolygonMesh& mesh, std::span<const std::uint8_t> doublets) {
     std::vector<std::uint8_t> troubled = large_vector<std::uint8_t>(mesh.vertex_count()), border = troubled;
     DisjointSets fans(mesh.corners.size());
     // Edges of other chunks may end at the same vertex.
@@ -60,7 +60,8 @@ std::vector<Index> nonmanifold_vertices(const PolygonMesh& mesh) {
     for (Index f : flat_facets(mesh))
         for (Index v : mesh.facet(f)) troubled[v] = 1;
     return indices_where(troubled.size(), chunks::light, [&](Index v) {
-        return troubled[v] || (facets[v] > 0 && facets[v] < 3 && !border[v]);
+        const Index least = !doublets.empty() && doublets[v] != 0 ? 2 : 3;
+        return troubled[v] || (facets[v] > 0 && facets[v] < least && !border[v]);
     });
 }
 

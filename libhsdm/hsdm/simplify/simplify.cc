@@ -87,7 +87,7 @@ private:
         const std::size_t intersecting = split_intersecting(found), distant = split_distant(found);
         result_.intersection_splits += intersecting;
         result_.error_splits += distant;
-        return intersecting + distant;
+        return intersecting + distant > 0 ? intersecting + distant : keep_doublets(found);
     }
 
     /// Merges vertices of leaves (decimate).
@@ -200,19 +200,54 @@ private:
 
     /// Removes doublets; neighbours stand for their fine vertices from then on.
     void drop_doublets() {
-        std::vector<Index> stands_for = dissolve_doublets(result_.mesh);
+        std::vector<Index> stands_for = dissolve_doublets(result_.mesh, staying());
         coarse_ = gathered(coarse_, drop_replaced(result_.mesh, stands_for));
         for_each_index(vertex_.size(), chunks::light, [&](Index v) { vertex_[v] = stands_for[vertex_[v]]; });
     }
 
     double tolerance() const { return bounds::planes_share * options_.max_error; }
 
+    /// Does this stand for one vertex of the fine mesh, that of its number?
+    bool is_own(const LeafCluster& place) const { return place.level == tree_.depth(); }
+
     /// Per vertex of the result, is it a vertex of the fine mesh?
     std::vector<std::uint8_t> own() const {
         std::vector<std::uint8_t> result = large_vector<std::uint8_t>(coarse_.size());
-        for_each_index(result.size(), chunks::light,
-                       [&](Index v) { result[v] = coarse_[v].level == tree_.depth(); });
+        for_each_index(result.size(), chunks::light, [&](Index v) { result[v] = is_own(coarse_[v]); });
         return result;
+    }
+
+    /// Per vertex of the result, is it to stay although it has only two facets? Empty if none is.
+    std::vector<std::uint8_t> staying() const {
+        if (stays_.empty()) return {};
+        std::vector<std::uint8_t> result = large_vector<std::uint8_t>(coarse_.size());
+        for_each_index(result.size(), chunks::light,
+                       [&](Index v) { result[v] = is_own(coarse_[v]) ? stays_[coarse_[v].cluster] : 0; });
+        return result;
+    }
+
+    /// What is wrong where no leaf can be subdivided is so because doublets of the fine mesh were removed:
+    /// those stay from now on. Returns how many they are.
+    std::size_t keep_doublets(const Findings& found) {
+        if (found.is_empty()) return 0;
+        std::vector<std::uint8_t> wrong = large_vector<std::uint8_t>(coarse_.size());
+        const auto mark_facet = [&](Index f) {
+            for (Index v : result_.mesh.facet(f)) wrong[v] = 1;
+        };
+        for (const auto& pair : found.intersecting)
+            for (Index f : pair) mark_facet(f);
+        for (Index v : found.far.fine_vertices) wrong[vertex_[v]] = 1;
+        for (Index v : found.far.vertices) wrong[v] = 1;
+        for (Index f : found.far.facets) mark_facet(f);
+        for (Index p : found.far_points.points)
+            if (const Index f = checks_->distances().nearest_facet(points_[p]); f != no_index) mark_facet(f);
+        const std::vector<Index> kept = indices_where(fine_.vertex_count(), chunks::light, [&](Index v) {
+            const LeafCluster& now = coarse_[vertex_[v]];
+            return wrong[vertex_[v]] && is_own(places_[v]) && !(is_own(now) && now.cluster == v);
+        });
+        if (!kept.empty()) stays_.resize(fine_.vertex_count(), 0);
+        for (Index v : kept) stays_[v] = 1;
+        return kept.size();
     }
 
     /// Adds the simple loops of at least three vertices that remain of a facet some of whose vertices
@@ -242,7 +277,7 @@ private:
     std::size_t split_troubled() {
         std::size_t splits = 0;
         std::vector<std::uint8_t> due = large_vector<std::uint8_t>(result_.mesh.vertex_count());
-        std::vector<Index> troubled = nonmanifold_vertices(result_.mesh);
+        std::vector<Index> troubled = nonmanifold_vertices(result_.mesh, staying());
         append_large(troubled, lost());
         for_each_in_order(troubled.size(), [&](std::size_t i) { splits += split_at(coarse_[troubled[i]]); });
         for_each_in_order(pinched_.size(), [&](std::size_t i) {
@@ -343,6 +378,7 @@ private:
     std::vector<LeafCluster> places_; // per fine vertex
     std::vector<Index> vertex_;       // per fine vertex, the vertex of the result
     std::vector<LeafCluster> coarse_; // per vertex of the result
+    std::vector<std::uint8_t> stays_; // per fine vertex, is it to stay though only two facets are left there?
     std::vector<Index> pinched_;      // facets of the fine mesh with opposite corners in one vertex
     RemeshedGroups remeshed_;         // results of the round before
     std::optional<MeshChecks> checks_;
