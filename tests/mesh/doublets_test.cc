@@ -53,8 +53,38 @@ TEST_CASE("a vertex on the straight way between its only two neighbours goes, it
     CHECK(find_self_intersections(mesh).triangle_pairs == 0);
 }
 
-TEST_CASE("no vertex goes where an edge joins its neighbours, or a facet would be left with two corners",
-          "[mesh]") {
+TEST_CASE("of two straight vertices between the same two neighbours none goes", "[mesh]") {
+    // a pillow of two halves: a quad 4 8 7 9 on the diagonal of the top, both 8 and 9 between 4 and 7
+    PolygonMesh mesh = support::mesh_of(support::cube_corners(), {{0, 2, 3, 1},
+                                                                  {0, 1, 5, 4},
+                                                                  {1, 3, 7, 5},
+                                                                  {3, 2, 6, 7},
+                                                                  {2, 0, 4, 6},
+                                                                  {4, 5, 7, 8},
+                                                                  {4, 8, 7, 9},
+                                                                  {9, 7, 6, 4}});
+    mesh.positions.emplace_back(0.51, 0.49, 1);
+    mesh.positions.emplace_back(0.49, 0.51, 1);
+    REQUIRE(measure_topology(mesh).closed());
+    CHECK(drop_straight_vertices(0.1, mesh) == 0);
+    CHECK(measure_topology(mesh).manifold());
+}
+
+TEST_CASE("of two straight vertices that are next to each other none goes", "[mesh]") {
+    PolygonMesh mesh = cube_with_doublet(0);
+    mesh.positions[8] = Vec3(0.3, 0.3, 1);
+    mesh.positions.emplace_back(0.6, 0.6, 1);
+    mesh.first[7] = mesh.first[6] = mesh.first[5];
+    mesh.first.resize(6);
+    mesh.corners.resize(mesh.first.back());
+    mesh.add_facet(std::array<Index, 5>{4, 5, 7, 9, 8});
+    mesh.add_facet(std::array<Index, 5>{8, 9, 7, 6, 4});
+    REQUIRE(measure_topology(mesh).closed());
+    CHECK(drop_straight_vertices(0.1, mesh) == 0);
+    CHECK(measure_topology(mesh).manifold());
+}
+
+TEST_CASE("no vertex goes where an edge joins its neighbours", "[mesh]") {
     // a triangle 4 5 8 and the rest of the top: vertex 8 lies between 4 and 5, which have an edge already
     PolygonMesh mesh = support::mesh_of(
         support::cube_corners(),

@@ -156,6 +156,23 @@ TEST_CASE("what is turned away from the sky stays a wall where most is layers", 
     CHECK(sheets.taken() == 5 * (of_sheet - 30));
 }
 
+TEST_CASE(
+    "what has no clear view stays a wall where three of four views turn away, not where two of three do",
+    "[normals]") {
+    for (const std::size_t away : {2u, 4u}) {
+        INFO("one view to the sky, " << away << " away from it");
+        TwoSheets sheets;
+        const Index first = 2 * of_sheet - 30; // a region of its own
+        std::erase_if(sheets.layers.edges, [&](const SignedEdge& e) { return e.b == first; });
+        sheets.see(0, of_sheet, 1);
+        sheets.see(of_sheet, first, 1);
+        sheets.layers.clear_sky = sheets.layers.sky;
+        sheets.see(first, first + 1, 1);
+        sheets.see(first + 1, first + 1 + away, -1);
+        CHECK(sheets.taken() == 5 * (away == 2 ? of_sheet : of_sheet - 30));
+    }
+}
+
 TEST_CASE("the clear sky decides, however much is open on both sides", "[normals]") {
     TwoSheets sheets;
     sheets.see(0, of_sheet, 1);

@@ -42,6 +42,11 @@ double farthest_point(const Solid& solid, const PolygonMesh& mesh) {
     return most;
 }
 
+bool warns_of_small_voxels(const Report& report) {
+    return std::ranges::count(report.warnings, std::string(warning_of::too_small), &Report::Warning::what)
+           > 0;
+}
+
 } // namespace
 
 TEST_CASE("voxels too small for a surface of these points to close are warned of where they were asked for",
@@ -54,12 +59,22 @@ TEST_CASE("voxels too small for a surface of these points to close are warned of
     ReconstructOptions options;
     options.depth = 7;
     const Report report = reconstruct(even, options).report;
+    CHECK(warns_of_small_voxels(report));
     const auto said =
         std::ranges::find(report.warnings, std::string(warning_of::too_small), &Report::Warning::what);
     REQUIRE(said != report.warnings.end());
     CHECK(std::abs(said->where.norm() - 1) < 2 * report.grid.voxel_size);
     options.depth = 6;
     CHECK(reconstruct(even, options).report.warnings.empty());
+    options.depth = {};
+    options.voxel_size = octree.voxel_size(7);
+    CHECK(warns_of_small_voxels(reconstruct(even, options).report));
+    const auto levels = reconstruct_levels(even, 6, 7);
+    REQUIRE(levels.size() == 2);
+    CHECK_FALSE(warns_of_small_voxels(levels[0].report));
+    CHECK(warns_of_small_voxels(levels[1].report));
+    // Nobody asked for these, which are a few too small for the thin side, and coarser ones help there.
+    CHECK_FALSE(warns_of_small_voxels(reconstruct(thirty_to_one(sphere(1)), {}).report));
 }
 
 TEST_CASE("voxels are too small where points are few, on one side of a cloud", "[pipeline]") {

@@ -451,8 +451,8 @@ DualContour dual_contour(const Octree& octree, const OctreeLevel& level, const N
     if (options.flat_corners)
         result.flat_corners =
             changed(collapse_flat_corners(sheets::plane_error * h, result.classes, result.mesh));
-    if (changed(drop_straight_vertices(sheets::plane_error * h, result.mesh)) > 0)
-        remove_isolated_vertices(result.mesh);
+    result.straight = changed(drop_straight_vertices(sheets::plane_error * h, result.mesh));
+    if (result.straight > 0) remove_isolated_vertices(result.mesh);
     changed(collapse_flat_facets(octree.origin, result.mesh));
     if (options.part.is_part())
         untangle_share(octree.origin, h, options, result);

@@ -1,5 +1,6 @@
 #include "hsdm/mesh/doublets.hh"
 
+#include "hsdm/core/chunks.hh"
 #include "hsdm/core/constants.hh"
 #include "hsdm/mesh/area_vector.hh"
 #include "hsdm/mesh/constants.hh"
@@ -50,15 +51,16 @@ bool is_between(const Vec3& p, const Vec3& a, const Vec3& b, double tolerance) {
 /// Vertices on the straight way between the only two next to them, which have more facets.
 std::vector<Between> straight_ones(const PolygonMesh& mesh, const VertexFacets& at, double tolerance) {
     std::vector<Between> result;
-    for (Index v = 0; v < mesh.vertex_count(); ++v) {
-        if (at.count[v] != 2) continue;
+    for_each_in_order(mesh.vertex_count(), [&](std::size_t i) {
+        const auto v = static_cast<Index>(i);
+        if (at.count[v] != 2) return;
         const auto [a, b] = beside(mesh.facet(at.facets[v][0]), v);
         if (at.count[a] == 2 || at.count[b] == 2
             || beside(mesh.facet(at.facets[v][1]), v) != std::array{b, a})
-            continue;
+            return;
         if (is_between(mesh.positions[v], mesh.positions[a], mesh.positions[b], tolerance))
             result.push_back({{std::min(a, b), std::max(a, b)}, v});
-    }
+    });
     return result;
 }
 
@@ -78,15 +80,17 @@ void keep_new_edges(const PolygonMesh& mesh, std::vector<Between>& straight) {
     straight = std::move(kept);
 }
 
-/// Takes vertices out of the rings of all facets.
+/// Takes vertices out of the rings of all facets. Three corners are left to each: no two of these vertices
+/// are next to each other; a triangle's third side would join the ends of one, and in a quad two have the
+/// same ends.
 void take_out(const std::vector<std::uint8_t>& goes, PolygonMesh& mesh) {
     Index end = 0, begin = 0;
-    for (std::size_t f = 0; f < mesh.facet_count(); ++f) {
+    for_each_in_order(mesh.facet_count(), [&](std::size_t f) {
         const Index next = mesh.first[f + 1];
         for (; begin < next; ++begin)
             if (goes[mesh.corners[begin]] == 0) mesh.corners[end++] = mesh.corners[begin];
         mesh.first[f + 1] = end;
-    }
+    });
     mesh.corners.resize(end);
 }
 
@@ -97,15 +101,7 @@ std::size_t drop_straight_vertices(double tolerance, PolygonMesh& mesh) {
     std::vector<Between> straight = straight_ones(mesh, at, tolerance);
     if (straight.empty()) return 0;
     keep_new_edges(mesh, straight);
-    std::vector<std::uint8_t> goes(mesh.vertex_count(), 0);
-    for (const Between& one : straight) goes[one.vertex] = 1;
-    const auto has_enough = [&](Index f) {
-        return std::ranges::count_if(mesh.facet(f), [&](Index v) { return goes[v] == 0; }) >= 3;
-    };
-    std::erase_if(straight, [&](const Between& one) {
-        return !std::ranges::all_of(at.facets[one.vertex], has_enough);
-    });
-    std::ranges::fill(goes, 0);
+    std::vector<std::uint8_t> goes = large_vector<std::uint8_t>(mesh.vertex_count());
     for (const Between& one : straight) goes[one.vertex] = 1;
     take_out(goes, mesh);
     return straight.size();

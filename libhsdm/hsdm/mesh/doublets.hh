@@ -18,7 +18,7 @@ std::size_t merge_doublets(PolygonMesh& mesh, const std::function<bool(Index)>& 
 /// two vertices next to them, off it by `tolerance` (the mesh's units) at most: cut into triangles, the two
 /// facets would have one in common, of hardly any area, and whether they pass through each other there is a
 /// matter of rounding. The vertices stay, isolated; a 2-manifold stays one, with as many facets, of three
-/// corners at least. Not where two such vertices are next to each other. Returns how many were taken out, the
+/// corners at least. Not beside another vertex of two facets. Returns how many were taken out, the
 /// same whatever the numbers of vertices. O(facets).
 std::size_t drop_straight_vertices(double tolerance, PolygonMesh& mesh);
 

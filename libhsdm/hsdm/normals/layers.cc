@@ -27,7 +27,7 @@ struct Views {
         return net > turning::clear_views * static_cast<double>(seeing)
                && net > turning::least_seeing * static_cast<double>(points);
     }
-    /// Do most of those that see it, however few, turn away from it?
+    /// Do three of four of those that see it, however few, turn away from it?
     bool turn_away() const {
         return static_cast<double>(facing) < -turning::clear_views * static_cast<double>(seeing);
     }

@@ -26,9 +26,9 @@ struct SkyReading {
 /// read as a wall one of them is turned away from the sky. Whether a component is of layers is asked of the
 /// signs that know nothing of the sky; if so, those that do are taken, unless they turn more than half as
 /// many points again. Regions of patches that differ are turned as a whole where that is clear. Without a
-/// clear view they stay, unless most points in question of their component are turned and they do not face
-/// away from what they see of the sky, clear or not. `walls`: signs of the patches and maybe more nodes,
-/// turned in place. O(edges).
+/// clear view they stay, unless most points in question of their component are turned and, of what they see
+/// of the sky, clear or not, they do not turn away from three of four. `walls`: signs of the patches and
+/// maybe more nodes, turned in place. O(edges).
 SkyReading take_layers(const Patches& patches, const LayerReading& layers, Signs& walls);
 
 } // namespace hsdm

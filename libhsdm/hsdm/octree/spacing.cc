@@ -2,6 +2,7 @@
 
 #include "hsdm/octree/constants.hh"
 
+#include <cassert>
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_reduce.h>
 
@@ -29,6 +30,7 @@ std::size_t count_places(const Octree& octree, std::size_t codes) {
 } // namespace
 
 std::array<std::size_t, morton_levels + 1> count_voxels(const Octree& octree) {
+    assert(octree.codes.size() == octree.size());
     // begins[l]: points whose predecessor shares their voxel at level l - 1 but not at level l.
     using Begins = std::array<std::size_t, morton_levels + 2>;
     const Begins begins = tbb::parallel_reduce(

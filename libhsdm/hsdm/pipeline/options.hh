@@ -18,7 +18,7 @@ bool must_estimate(const PointView& cloud, const ReconstructOptions& options);
 inline bool closes_all(Holes holes) {
     return holes == Holes::close || holes == Holes::complete;
 }
-/// Was the size of voxels asked for? With levels it is, too, in the report.
+/// Was the size of voxels asked for, by these options or, as the report's say, as one of several levels?
 bool are_voxels_asked_for(const ReconstructOptions& options, const Report& report);
 bool wants_adaptive(const ReconstructOptions& options);
 bool wants_confidence(const ReconstructOptions& options);
