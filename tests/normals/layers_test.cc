@@ -1,5 +1,6 @@
 #include "hsdm/normals/layers.hh"
 #include "hsdm/normals/normals.hh"
+#include "hsdm/normals/orient_normals.hh"
 #include "support/scanner.hh"
 
 #include <catch2/catch.hpp>
@@ -191,6 +192,33 @@ TEST_CASE("a plate without a clear view stays one where most is layers", "[norma
     sheets.layers.clear_sky = sheets.layers.sky;
     sheets.see(first, 2 * of_sheet, -1);
     CHECK(sheets.taken() == 5 * (of_sheet - 30));
+}
+
+TEST_CASE("of normals that came with the points all of the sky counts, clear or not", "[normals]") {
+    TwoSheets sheets;
+    std::vector<SignedEdge> evidence; // of a wall, with one tenth of it against that
+    for (Index p = 0; p < of_sheet; ++p) {
+        const float across = p % 10 == 0 ? 1 : -1;
+        evidence.push_back({p, p + static_cast<Index>(of_sheet), across, 1});
+        if (p + 1 == of_sheet) continue;
+        for (const Index sheet : {Index{0}, static_cast<Index>(of_sheet)})
+            evidence.push_back({sheet + p, sheet + p + 1, 4, 4});
+    }
+    sheets.see(0, 70, 1);                       // the one is outermost here,
+    sheets.see(of_sheet + 70, 2 * of_sheet, 1); // the other there
+    sheets.layers.clear_sky.assign(2 * of_sheet, 0);
+    sheets.patches.centroids.assign(2 * of_sheet, Vec3(0, 0, 0));
+    sheets.patches.normals.assign(2 * of_sheet, Vec3(0, 0, 1));
+    sheets.patches.sides.assign(2 * of_sheet, 5);
+    OutsideView view;
+    view.votes.assign(2 * of_sheet, 0);
+    for (const bool came : {false, true}) {
+        OrientOptions options;
+        options.signs_count = came;
+        const PatchSigns signs =
+            sign_patches(sheets.patches, evidence, view, {}, options, [&] { return sheets.layers; });
+        CHECK(signs.report.of_layers == (came ? 5 * of_sheet : 0));
+    }
 }
 
 TEST_CASE("a wall stays one if only signs that follow the sky call it layers", "[normals]") {

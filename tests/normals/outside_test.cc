@@ -100,4 +100,19 @@ TEST_CASE("of a plate no sky is clear, of a solid all that is seen of it is", "[
 
     const Seen ball(support::sample(support::sphere(1), {.points = 20000}), true);
     for (std::size_t p = 0; p < ball.patches.size(); ++p) CHECK(ball.view.clear_sky[p] == ball.view.sky[p]);
+
+    const Vec3 size(1.4, 1, 0.9);
+    const Seen box(support::sample(support::box(size), {.points = 20000}), true);
+    const double voxel =
+        box.octree.extent / (1 << depth_of_space(box.octree.extent, estimate_spacing(box.octree)));
+    std::size_t on_faces = 0;
+    for (std::size_t p = 0; p < box.patches.size(); ++p) {
+        const Vec3& c = box.patches.centroids[p];
+        unsigned beside = 0; // how many sides of the box are near
+        for (unsigned k = 0; k < 3; ++k) beside += std::min(c[k], size[k] - c[k]) < 2 * voxel;
+        if (beside > 1 || box.view.sky[p] == 0) continue;
+        ++on_faces;
+        CHECK(box.view.clear_sky[p] == box.view.sky[p]);
+    }
+    CHECK(on_faces > box.patches.size() / 3);
 }

@@ -29,7 +29,8 @@ struct OutsideView {
     /// way round, else 0; weighed by the cosine
     std::vector<std::int8_t> sky;
     /// The same without patches on sheets beside each other that are open to the sky on both sides: those are
-    /// a plate, or layers of a surface over a solid whose underside nobody scanned
+    /// a plate, or layers of a surface over a solid whose underside nobody scanned. Nor does what lies within
+    /// two voxels of a convex edge tell anything, where the sky is open on several sides
     std::vector<std::int8_t> clear_sky;
 };
 
