@@ -70,6 +70,19 @@ inline constexpr std::size_t most_work = 128;
 
 } // namespace hsdm::handles
 
+// rims.hh
+namespace hsdm::rims {
+
+/// share: of what lies more than a spacing beyond the points, that is drawn in.
+/// Why: nearly all; what is left keeps neighbours in order, where all of it would lay them on one line.
+inline constexpr double drawn_share = 0.9;
+
+/// rounds: half of the way to the mean of the neighbours in each.
+/// Why: bounds the work, as for spikes.
+inline constexpr int rounds = 30;
+
+} // namespace hsdm::rims
+
 // spikes.hh
 namespace hsdm::spikes {
 

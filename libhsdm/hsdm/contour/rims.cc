@@ -1,5 +1,6 @@
 #include "hsdm/contour/rims.hh"
 
+#include "hsdm/contour/facet_constants.hh"
 #include "hsdm/core/chunks.hh"
 
 #include <algorithm>
@@ -14,6 +15,15 @@ bool is_at_rim(const DualMesh& mesh, Index dual) {
     return std::ranges::any_of(mesh.duals.corners_of(dual), [&](FacetCorner corner) {
         return mesh.links.of(corner).rim || mesh.links.of(corner.previous()).rim;
     });
+}
+
+/// Is a vertex in a voxel without points, in a facet with one at a rim?
+bool is_beyond_rim(const DualMesh& mesh, Index dual) {
+    return mesh.duals.voxels[dual].voxel == no_index
+           && std::ranges::any_of(mesh.duals.corners_of(dual), [&](FacetCorner corner) {
+                  return is_at_rim(mesh, mesh.duals.from(corner.next()))
+                         || is_at_rim(mesh, mesh.duals.from(corner.previous()));
+              });
 }
 
 /// Where the sheets of one vertex end.
@@ -33,7 +43,7 @@ public:
         SheetEnd end;
         Index most = 0, last = no_index;
         const auto look = [&](Index s) {
-            most = std::max(most, sets_.sets[s].count);
+            most = std::max(most, most_around(sets_.sets[s]));
             find_nearest(s, at, end);
         };
         for (const FacetCorner corner : mesh_.duals.corners_of(dual)) {
@@ -49,6 +59,16 @@ public:
     }
 
 private:
+    /// Points of the fullest set around that faces the same way: at the tip of a wedge its own may have one.
+    Index most_around(const NormalSet& set) const {
+        Index most = set.count;
+        for_neighbors(level_, set.voxel, [&](Index v) {
+            for (const NormalSet& other : sets_.of_voxel(v))
+                if ((other.normal | set.normal) > 0) most = std::max(most, other.count);
+        });
+        return most;
+    }
+
     void find_nearest(Index s, const Vec3& at, SheetEnd& end) const {
         sets_.for_points_of(s, level_, [&](Index p) {
             const double d = (octree_.positions[p] - at).norm();
@@ -62,12 +82,13 @@ private:
     const DualMesh& mesh_;
 };
 
-/// The place of a vertex once its sheet ends a spacing beyond its points, or where it was.
+/// The place of a vertex once its sheet ends a spacing beyond its points, and a tenth of what it went on
+/// farther, so that neighbours stay in order; or where it was.
 Vec3 drawn_in(const SheetEnd& end, const Vec3& p, VertexClass type, const Vec3& direction) {
     const Vec3 way = end.nearest - p, across = direction * (direction | way);
     const Vec3 back = type == VertexClass::smooth ? way - across : across;
     const double distance = back.norm();
-    return distance > end.spacing ? p + back * (1 - end.spacing / distance) : p;
+    return distance > end.spacing ? p + back * (rims::drawn_share * (1 - end.spacing / distance)) : p;
 }
 
 /// Does a facet round a vertex turn over between two places of the vertices?
@@ -84,36 +105,72 @@ bool turns_over(const DualMesh& mesh, Index dual, const std::vector<Vec3>& befor
     });
 }
 
+/// The mean of a vertex's neighbours, each as often as facets have it.
+Vec3 amid(const DualMesh& mesh, Index dual, const std::vector<Vec3>& positions) {
+    Vec3 sum(0, 0, 0);
+    double count = 0;
+    for (const FacetCorner corner : mesh.duals.corners_of(dual))
+        for (const FacetCorner beside : {corner.next(), corner.previous()})
+            sum += positions[mesh.duals.from(beside)], ++count;
+    return sum / count;
+}
+
+/// Puts drawn vertices back round which a facet turns over; returns these.
+std::vector<Index> put_back(const DualMesh& mesh, const std::vector<Vec3>& placed, std::vector<Index> drawn,
+                            std::vector<Vec3>& positions) {
+    std::vector<Index> back;
+    for (std::size_t before = 1; before > 0;) {
+        std::vector<std::uint8_t> turning(drawn.size());
+        for_each_index(drawn.size(), chunks::slow,
+                       [&](Index i) { turning[i] = turns_over(mesh, drawn[i], placed, positions); });
+        before = drawn.size();
+        std::size_t kept = 0;
+        for (std::size_t i = 0; i < drawn.size(); ++i) {
+            if (turning[i] == 0) {
+                drawn[kept++] = drawn[i];
+                continue;
+            }
+            positions[drawn[i]] = placed[drawn[i]];
+            back.push_back(drawn[i]);
+        }
+        drawn.resize(kept);
+        before -= kept;
+    }
+    return back;
+}
+
+/// Moves vertices half of the way to the mean of their neighbours, until none ends farther off than a
+/// spacing.
+void ease_in(const EndFinder& end_of, const DualMesh& mesh, std::vector<Index> far,
+             std::vector<Vec3>& positions) {
+    std::vector<Vec3> eased;
+    for (int round = 0; round < rims::rounds; ++round) {
+        std::erase_if(far, [&](Index v) {
+            const SheetEnd end = end_of(v, positions[v]);
+            return end.distance <= end.spacing;
+        });
+        eased.clear();
+        for (const Index v : far) eased.push_back(0.5 * (positions[v] + amid(mesh, v, positions)));
+        for (std::size_t i = 0; i < far.size(); ++i) positions[far[i]] = eased[i];
+    }
+}
+
 } // namespace
 
 void draw_in_rims(const Octree& octree, const OctreeLevel& level, const NormalSets& sets,
                   const DualMesh& mesh, PlacedVertices& vertices) {
     const std::vector<Vec3> placed = copy_of_large(vertices.positions);
     const EndFinder end_of(octree, level, sets, mesh);
-    const std::vector<Index> moved = indices_where(mesh.duals.size(), chunks::slow, [&](Index v) {
-        if (vertices.classes[v] == VertexClass::corner || !(mesh.duals.open[v] || is_at_rim(mesh, v)))
+    std::vector<Index> drawn = indices_where(mesh.duals.size(), chunks::slow, [&](Index v) {
+        if (vertices.classes[v] == VertexClass::corner
+            || !(mesh.duals.open[v] || is_at_rim(mesh, v) || is_beyond_rim(mesh, v)))
             return false;
         vertices.positions[v] =
             drawn_in(end_of(v, placed[v]), placed[v], vertices.classes[v], vertices.directions[v]);
         return vertices.positions[v] != placed[v];
     });
-    std::vector<Vec3> drawn;
-    drawn.reserve(moved.size());
-    for (const Index v : moved) drawn.push_back(vertices.positions[v]);
-    // Those round which a facet turns over go back, a quarter of the way at a time.
-    std::vector<std::uint8_t> quarters(moved.size(), 4), turning(moved.size());
-    for (bool any = true; any;) {
-        for_each_index(moved.size(), chunks::slow, [&](Index i) {
-            turning[i] = quarters[i] > 0 && turns_over(mesh, moved[i], placed, vertices.positions);
-        });
-        any = false;
-        for (std::size_t i = 0; i < moved.size(); ++i) {
-            if (!turning[i]) continue;
-            any = true;
-            const Vec3& from = placed[moved[i]];
-            vertices.positions[moved[i]] = from + (drawn[i] - from) * (0.25 * --quarters[i]);
-        }
-    }
+    std::vector<Index> back = put_back(mesh, placed, std::move(drawn), vertices.positions);
+    ease_in(end_of, mesh, std::move(back), vertices.positions);
 }
 
 } // namespace hsdm
