@@ -42,8 +42,7 @@ private:
         if (begin == end) return attribute(point);
         std::vector<WeightedValue> values{{attribute(point), 1}};
         for (auto it = begin; it != end; ++it) values.push_back({attribute(it->other), 1});
-        const double majority = majority_of(values); // sorts them: sums depend on their order
-        return attribute.type == VertexProperty::Type::int32 ? majority : mean_of(values);
+        return average_of_equal(attribute.type, values);
     }
 
     const Octree& octree_;

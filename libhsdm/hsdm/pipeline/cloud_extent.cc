@@ -46,8 +46,7 @@ CloudExtent extent_of_part(const PointParts& parts) {
             refuse_in_tiles("some parts of the cloud have normals and others have none");
         extent.has_normals = part.has_normals();
         join(scanners_of(part), extent.points > 0, extent.scanners);
-        if (part.colors.count > 0 || !part.scalars.empty())
-            refuse_in_tiles("the cloud has colours or scalars");
+        extent.attributes.join(CloudAttributes::of(part), extent.points > 0);
         const NonfiniteRows nonfinite = find_nonfinite(part.positions);
         if (nonfinite.count > 0 && extent.nonfinite == 0)
             extent.first_nonfinite = extent.points + nonfinite.first;
@@ -64,7 +63,10 @@ void join(const CloudExtent& next, CloudExtent& extent) {
     if (extent.points > 0 && next.points > 0 && extent.has_normals != next.has_normals)
         refuse_in_tiles("some parts of the cloud have normals and others have none");
     extent.has_normals = next.points > 0 ? next.has_normals : extent.has_normals;
-    if (next.points > 0) join(next.scanners, extent.points > 0, extent.scanners);
+    if (next.points > 0) {
+        join(next.scanners, extent.points > 0, extent.scanners);
+        extent.attributes.join(next.attributes, extent.points > 0);
+    }
     if (extent.nonfinite == 0) extent.first_nonfinite = extent.points + next.first_nonfinite;
     extent.nonfinite += next.nonfinite;
     extent.points += next.points;
@@ -125,6 +127,7 @@ void put_extent(const CloudExtent& extent, Ranks::Bytes& bytes) {
         put(count, bytes);
     put(extent.box, bytes);
     put(extent.has_normals, bytes), put(extent.scanners, bytes);
+    extent.attributes.put(bytes);
 }
 
 CloudExtent extent_from(ByteReader& bytes) {
@@ -133,6 +136,7 @@ CloudExtent extent_from(ByteReader& bytes) {
         *count = bytes.take<std::size_t>();
     extent.box = bytes.take<Box>();
     extent.has_normals = bytes.take<bool>(), extent.scanners = bytes.take<CloudScanners>();
+    extent.attributes = CloudAttributes::from(bytes);
     return extent;
 }
 

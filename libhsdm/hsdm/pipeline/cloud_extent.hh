@@ -4,6 +4,7 @@
 #include "hsdm/cloud/cloud_frame.hh"
 #include "hsdm/core/ranks.hh"
 #include "hsdm/normals/orient_normals.hh"
+#include "hsdm/pipeline/attribute_rows.hh"
 #include "hsdm/pipeline/reconstruct_in_tiles.hh"
 
 #include <optional>
@@ -33,6 +34,7 @@ struct CloudExtent {
     Box box;                         ///< of those that are finite
     bool has_normals = false;        ///< have all, or none?
     CloudScanners scanners{};
+    CloudAttributes attributes{};
 
     std::size_t finite() const { return points - nonfinite; }
 
