@@ -1,5 +1,6 @@
-// Clouds in tiles whose points have colours and scalars.
+// Clouds in tiles whose points have colours, scalars and scanners.
 #include "hsdm/errors.hh"
+#include "hsdm/io/join_points.hh"
 #include "hsdm/io/kept_scratch.hh"
 #include "hsdm/io/write_om.hh"
 #include "hsdm/mesh/to_mesh.hh"
@@ -9,6 +10,7 @@
 #include "support/random.hh"
 #include "support/rank_threads.hh"
 #include "support/sample.hh"
+#include "support/scanner.hh"
 
 #include <catch2/catch.hpp>
 
@@ -18,7 +20,7 @@ using namespace hsdm;
 
 namespace {
 
-TileOptions tiles_of_colors(std::size_t points = 2500) {
+TileOptions tiles_of_colors(std::size_t points = 1600) {
     TileOptions tiles;
     tiles.memory = std::size_t{1} << 30;
     tiles.most_points = points;
@@ -43,7 +45,7 @@ void paint(PointCloud& cloud) {
 
 PointCloud painted_torus(bool normals, double noise = 0) {
     PointCloud cloud = support::sample(support::torus(1, 0.35),
-                                       {.points = 6000, .normals = normals, .position_noise = noise});
+                                       {.points = 4000, .normals = normals, .position_noise = noise});
     for (std::size_t i = 0; i < 300; ++i) { // equal points, of other colours
         cloud.positions.push_back(cloud.positions[17 * (i / 2)]);
         if (normals) cloud.normals.push_back(cloud.normals[17 * (i / 2)]);
@@ -52,18 +54,23 @@ PointCloud painted_torus(bool normals, double noise = 0) {
     return cloud;
 }
 
+std::string option(const Report& report, const char* name) {
+    const auto found = report.options.find(name);
+    return found == report.options.end() ? "" : found->second;
+}
+
 void check_same_values(const Reconstruction& whole, const Reconstruction& tiles) {
     const PolygonMesh one = to_polygons(whole.mesh), other = to_polygons(tiles.mesh);
     CHECK(one.facet_count() > 100);
     CHECK(support::difference_of_bits(one, other) == "");
-    std::string names;
-    for (const VertexProperty& property : other.properties) names += property.name + ' ';
-    CHECK(names.starts_with("red green blue alpha intensity part hsdm_level "));
+    for (const char* name : {"normals", "sensors", "left_out"})
+        CHECK(option(whole.report, name) == option(tiles.report, name));
+    CHECK(whole.report.rejected.at("normals_turned") == tiles.report.rejected.at("normals_turned"));
 }
 
 /// Of one process and of three ranks.
-void check_everywhere(const PointCloud& cloud, const ReconstructOptions& options) {
-    const Reconstruction whole = reconstruct(cloud, options);
+Reconstruction check_everywhere(const PointCloud& cloud, const ReconstructOptions& options) {
+    Reconstruction whole = reconstruct(cloud, options);
     TileReport how;
     check_same_values(whole, reconstruct_in_tiles(view_of(cloud), options, tiles_of_colors(), &how));
     CHECK(how.tiles > 1);
@@ -76,6 +83,7 @@ void check_everywhere(const PointCloud& cloud, const ReconstructOptions& options
         CHECK(failure == "");
     REQUIRE(result);
     check_same_values(whole, *result);
+    return whole;
 }
 
 std::string bytes_written(const support::Folder& folder, const auto& write) {
@@ -94,14 +102,18 @@ TEST_CASE("colours and scalars come to the vertices of tiles as in one piece", "
             cloud.normals.push_back({0, 0, 1});
         }
         paint(cloud);
-        check_everywhere(cloud, options);
+        const Reconstruction whole = check_everywhere(cloud, options);
+        std::string names;
+        for (const VertexProperty& property : to_polygons(whole.mesh).properties)
+            names += property.name + ' ';
+        CHECK(names.starts_with("red green blue alpha intensity part hsdm_level "));
     }
     SECTION("of estimated normals") {
         options.depth = GENERATE(std::optional<int>(), std::optional<int>(5));
         check_everywhere(painted_torus(false), options);
     }
     SECTION("of points that are moved") {
-        check_everywhere(painted_torus(GENERATE(false, true), 0.05), options);
+        check_everywhere(painted_torus(false, 0.06), options);
     }
     SECTION("of normals that are mended") {
         PointCloud cloud = painted_torus(true);
@@ -138,7 +150,7 @@ TEST_CASE("what only some parts of a cloud have is left out, and told", "[pipeli
     PointCloud all = painted_torus(true);
     const auto half = [&](bool first) {
         PointCloud part;
-        for (std::size_t i = first ? 0 : 3000; i < (first ? 3000 : all.size()); ++i) {
+        for (std::size_t i = first ? 0 : 2000; i < (first ? 2000 : all.size()); ++i) {
             part.positions.push_back(all.positions[i]);
             part.normals.push_back(all.normals[i]);
         }
@@ -148,9 +160,9 @@ TEST_CASE("what only some parts of a cloud have is left out, and told", "[pipeli
     const std::vector<double>& values = all.scalars[0].values;
     first.colors.assign(first.size(), {1, 2, 3, 4});
     first.scalars = {{"red", std::vector<double>(first.size(), 5), true},
-                     {"intensity", {values.begin(), values.begin() + 3000}, true},
+                     {"intensity", {values.begin(), values.begin() + 2000}, true},
                      {"range", std::vector<double>(first.size(), 6), false}};
-    second.scalars = {{"intensity", {values.begin() + 3000, values.end()}, false},
+    second.scalars = {{"intensity", {values.begin() + 2000, values.end()}, false},
                       {"red", std::vector<double>(second.size(), 7), true}};
     all.colors.clear();
     all.scalars = {{"red", first.scalars[0].values, true}, {"intensity", values, false}};
@@ -185,4 +197,60 @@ TEST_CASE("a run with colours goes on where one was ended", "[pipeline]") {
         }
         CHECK(how.went_on);
     }
+}
+
+TEST_CASE("points face their own scanners in tiles as in one piece", "[pipeline][slow]") {
+    // Layers that do not register: without the scanners some face the other way.
+    PointCloud cloud = support::scan_from_above(support::in_general_pose(support::box({1, 0.8, 0.5})), 1,
+                                                {.points = 5000, .positions = 3, .misalignment = 0.03});
+    ReconstructOptions options{.threads = 2};
+    SECTION("of estimated normals, and some of which no scanner is known") {
+        for (std::size_t i = 0; i < cloud.size(); i += 5) cloud.sensor_of[i] = i % 2 == 0 ? -1 : 7;
+        options.depth = 4;
+    }
+    SECTION("of points that are moved") {}
+    SECTION("of normals that contradict each other, beside a scalar") {
+        options.depth = 4;
+        cloud.normals.resize(cloud.size());
+        for (std::size_t i = 0; i < cloud.size(); ++i)
+            cloud.normals[i] = (cloud.positions[i] * (i % 3 == 0 ? -1 : 1)).normalized();
+        cloud.scalars = {{"height", std::vector<double>(cloud.size(), 1), false}};
+    }
+    const Reconstruction whole = check_everywhere(cloud, options);
+    CHECK(option(whole.report, "sensors") == "3");
+}
+
+TEST_CASE("parts that tell of their scanners know what joined scans know", "[pipeline]") {
+    std::vector<PointCloud> scans(3);
+    support::Random random(5);
+    for (PointCloud& scan : scans)
+        for (int i = 0; i < 900; ++i) {
+            const double x = random.uniform(-1, 1), y = random.uniform(-1, 1);
+            scan.positions.emplace_back(x, y, 0.3 * x * x - 0.2 * y * y); // either side may be out
+        }
+    const Vec3 above(0.3, 0.2, 5), below(0.3, 0.2, -5);
+    SECTION("one place") {
+        for (PointCloud& scan : scans) scan.sensor = below;
+    }
+    SECTION("one place, but not of all") {
+        scans[0].sensor = scans[1].sensor = below;
+    }
+    SECTION("one place that is sure, but not of all") {
+        scans[0].sensors = {below}, scans[1].sensor = below;
+    }
+    SECTION("two places") {
+        scans[0].sensor = scans[2].sensor = below, scans[1].sensor = above;
+    }
+    SECTION("two places, numbered one way and the other") {
+        scans[0].sensors = {below, above}, scans[1].sensors = {above, below};
+        scans[0].sensor_of.assign(900, 0), scans[1].sensor_of.assign(900, 1);
+    }
+    JoinedPoints joined;
+    for (const PointCloud& scan : scans) joined.add({.cloud = scan, .format = "ply"});
+    const PointCloud all = std::move(joined).take().cloud;
+    const PointParts parts = [&](const auto& visit) {
+        for (const PointCloud& scan : scans) visit(view_of(scan));
+    };
+    const ReconstructOptions options{.depth = 4, .threads = 2};
+    check_same_values(reconstruct(all, options), reconstruct_in_tiles(parts, options, tiles_of_colors(900)));
 }

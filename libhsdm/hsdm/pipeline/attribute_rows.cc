@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <utility>
 
 namespace hsdm {
 namespace {
@@ -69,7 +70,7 @@ void CloudAttributes::join(const CloudAttributes& next, bool has_some) {
 }
 
 void CloudAttributes::put(Ranks::Bytes& bytes) const {
-    hsdm::put(colors, bytes);
+    hsdm::put(colors, bytes), hsdm::put(scanners, bytes);
     hsdm::put(std::uint64_t{scalars.size()}, bytes);
     for (const Named& scalar : scalars) put_text(scalar.name, bytes), hsdm::put(scalar.is_label, bytes);
     hsdm::put(std::uint64_t{left_out.size()}, bytes);
@@ -78,7 +79,7 @@ void CloudAttributes::put(Ranks::Bytes& bytes) const {
 
 CloudAttributes CloudAttributes::from(ByteReader& bytes) {
     CloudAttributes attributes;
-    attributes.colors = bytes.take<bool>();
+    attributes.colors = bytes.take<bool>(), attributes.scanners = bytes.take<bool>();
     for (auto count = bytes.take<std::uint64_t>(); count > 0; --count) {
         std::string name = bytes.take_text();
         attributes.scalars.push_back({std::move(name), bytes.take<bool>()});
@@ -98,6 +99,24 @@ AttributeRows::AttributeRows(const CloudAttributes& attributes) {
     for (const auto& [name, is_label] : attributes.scalars) // as attributes_of() has it
         if (!name.starts_with("hsdm_") && !(attributes.colors && is_channel(name)))
             add(name, is_label ? Type::int32 : Type::float64);
+    has_scanners_ = attributes.scanners;
+    if (has_scanners_) bytes_ += sizeof(std::int32_t);
+}
+
+AttributeRows AttributeRows::of_vertices() const {
+    AttributeRows rows = *this;
+    if (std::exchange(rows.has_scanners_, false)) rows.bytes_ -= sizeof(std::int32_t);
+    return rows;
+}
+
+std::int32_t AttributeRows::scanner(const char* row) const {
+    std::int32_t number;
+    std::memcpy(&number, row + bytes_ - sizeof number, sizeof number);
+    return number;
+}
+
+void AttributeRows::set_scanner(char* row, std::int32_t number) const {
+    std::memcpy(row + bytes_ - sizeof number, &number, sizeof number);
 }
 
 double AttributeRows::value(const char* row, std::size_t column) const {
@@ -143,6 +162,7 @@ void AttributeRows::write_mean(std::span<const char* const> rows, char* row) con
         for (const char* one : rows) values.push_back({value(one, k), 1});
         set(row, k, average_of_equal(columns_[k].type, values));
     }
+    if (has_scanners_) set_scanner(row, scanner(rows.front()));
 }
 
 PointView AttributeRows::view(const std::vector<char>& rows) const {

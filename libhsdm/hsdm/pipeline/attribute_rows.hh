@@ -13,6 +13,7 @@ struct CloudAttributes {
         bool is_label;
     };
     bool colors = false;
+    bool scanners = false;               ///< numbers of scanners, which are told once all parts are known
     std::vector<Named> scalars{};        ///< of several of one name the first
     std::vector<std::string> left_out{}; ///< names of what only some parts have, as in PointFile::partial
 
@@ -27,7 +28,7 @@ private:
 };
 
 /// How they lie in a row: those of attributes_of(), one after the other, channels as bytes and all else as
-/// doubles.
+/// doubles; then of points the number of their scanner, if there are several.
 class AttributeRows {
 public:
     struct Column {
@@ -39,15 +40,21 @@ public:
     AttributeRows() = default; ///< of a cloud that has none
     explicit AttributeRows(const CloudAttributes& attributes);
 
+    AttributeRows of_vertices() const; ///< without scanners
+
     std::size_t bytes() const { return bytes_; } ///< of a row; 0: there are none
+    bool has_scanners() const { return has_scanners_; }
+    std::int32_t scanner(const char* row) const;
+    void set_scanner(char* row, std::int32_t number) const;
     const std::vector<Column>& columns() const { return columns_; }
     double value(const char* row, std::size_t column) const;
 
     /// A part's attributes, one a column. It must outlive them. Throws Error if it lacks one.
     std::vector<PointAttribute> in(const PointView& part) const;
-    /// Writes the row of a point of that part.
+    /// Writes the row of a point of that part, but for its scanner.
     void write(const std::vector<PointAttribute>& of_part, Index point, char* row) const;
-    /// Writes what several equal points are together, in whatever order they come.
+    /// Writes what several equal points are together, in whatever order they come; their scanner is that of
+    /// the first.
     void write_mean(std::span<const char* const> rows, char* row) const;
 
     /// Rows as a cloud without places.
@@ -62,6 +69,7 @@ private:
 
     std::vector<Column> columns_;
     std::size_t bytes_ = 0;
+    bool has_scanners_ = false;
 };
 
 } // namespace hsdm

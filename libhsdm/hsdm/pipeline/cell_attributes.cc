@@ -28,9 +28,19 @@ const char* CellAttributes::of(const Octree& octree, std::size_t point) {
     return mean_.data();
 }
 
+std::vector<std::int32_t> scanners_of(const ScratchCloud& cloud, const Octree& octree) {
+    std::vector<std::int32_t> numbers;
+    if (!cloud.attributes().has_scanners()) return numbers;
+    CellAttributes on_disk(cloud);
+    resize_large(numbers, octree.size());
+    for (std::size_t i = 0; i < numbers.size(); ++i)
+        numbers[i] = cloud.attributes().scanner(on_disk.of(octree, i));
+    return numbers;
+}
+
 std::vector<char> take_attributes(const ScratchCloud& cloud, const VoxelRange& range, Octree& octree) {
     const std::size_t bytes = cloud.attributes().bytes();
-    if (bytes == 0) return {};
+    if (cloud.attributes().columns().empty()) return {};
     const int shift = 3 * (morton_levels - range.depth);
     const auto first_of = [&](MortonCode code) {
         return static_cast<std::size_t>(std::ranges::lower_bound(octree.codes, code << shift)

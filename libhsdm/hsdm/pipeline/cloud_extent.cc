@@ -5,6 +5,9 @@
 #include "hsdm/errors.hh"
 #include "hsdm/octree/octree.hh"
 
+#include <algorithm>
+#include <utility>
+
 namespace hsdm {
 namespace {
 
@@ -23,21 +26,63 @@ void add_to_sample(const PointView& part, std::size_t before, CloudExtent& exten
     }
 }
 
-CloudScanners scanners_of(const PointView& part) {
-    CloudScanners scanners{part.sensor, {}, part.sensors.size() > 1 || part.sensor_of.count > 0};
-    if (!part.sensors.empty()) scanners.viewpoint = part.sensors.front();
-    return scanners;
-}
+/// Scanners of parts that are added one after the other, as JoinedPoints has them.
+struct JoinedScanners {
+    std::vector<Vec3> places{};           ///< each once
+    bool are_sure = false;                ///< some are of PointCloud::sensors
+    bool of_all = true;                   ///< has each point one of them?
+    std::optional<Vec3> sensor{};         ///< of PointCloud::sensor, of all parts
+    bool has_some = false, is_one = true; ///< parts; have all that same sensor?
 
-/// Adds those of more points; `has_some`: of others, that came before.
-void join(const CloudScanners& next, bool has_some, CloudScanners& scanners) {
-    if (!has_some) scanners = next;
-    const bool are_same = scanners.sensor == next.sensor && scanners.viewpoint == next.viewpoint;
-    scanners.are_many = scanners.are_many || next.are_many || !are_same;
-}
+    static JoinedScanners of(const PointView& part) {
+        JoinedScanners one;
+        for (const Vec3& place : scanners_in(part)) one.add_place(place);
+        one.are_sure = !part.sensors.empty();
+        one.sensor = part.sensor;
+        one.has_some = true;
+        for (std::size_t i = 0; i < part.sensor_of.count && one.of_all; ++i)
+            one.of_all = scanner_of(part, i) >= 0;
+        one.of_all = one.of_all && !one.places.empty();
+        return one;
+    }
+    void add_place(const Vec3& place) {
+        if (std::ranges::find(places, place) == places.end()) places.push_back(place);
+    }
+    void join(const JoinedScanners& next) {
+        if (!next.has_some) return;
+        if (!std::exchange(has_some, true)) sensor = next.sensor;
+        for (const Vec3& place : next.places) add_place(place);
+        are_sure = are_sure || next.are_sure;
+        of_all = of_all && next.of_all;
+        is_one = is_one && next.is_one && sensor == next.sensor;
+    }
+    bool is_single() const { return places.size() == 1 && of_all; }
+    /// Does each point have to say which one saw it?
+    bool are_several() const { return !places.empty() && !is_single() && (are_sure || places.size() > 1); }
+    CloudScanners known() const {
+        CloudScanners scanners;
+        if (are_sure || places.size() > 1) scanners.sensors = places;
+        if (are_sure ? is_one : is_single()) scanners.sensor = are_sure ? sensor : places.front();
+        return scanners;
+    }
+
+    void put(Ranks::Bytes& bytes) const {
+        put_vector(places, bytes);
+        hsdm::put(sensor, bytes);
+        for (const bool is : {are_sure, of_all, has_some, is_one}) hsdm::put(is, bytes);
+    }
+    static JoinedScanners from(ByteReader& bytes) {
+        JoinedScanners scanners;
+        scanners.places = bytes.take_vector<Vec3>();
+        scanners.sensor = bytes.take<std::optional<Vec3>>();
+        for (bool* const is : {&scanners.are_sure, &scanners.of_all, &scanners.has_some, &scanners.is_one})
+            *is = bytes.take<bool>();
+        return scanners;
+    }
+};
 
 /// What this rank finds in its part.
-CloudExtent extent_of_part(const PointParts& parts) {
+CloudExtent extent_of_part(const PointParts& parts, JoinedScanners& scanners) {
     CloudExtent extent;
     parts([&](const PointView& part) {
         check_view(part);
@@ -45,7 +90,7 @@ CloudExtent extent_of_part(const PointParts& parts) {
         if (extent.points > 0 && extent.has_normals != part.has_normals())
             refuse_in_tiles("some parts of the cloud have normals and others have none");
         extent.has_normals = part.has_normals();
-        join(scanners_of(part), extent.points > 0, extent.scanners);
+        scanners.join(JoinedScanners::of(part));
         extent.attributes.join(CloudAttributes::of(part), extent.points > 0);
         const NonfiniteRows nonfinite = find_nonfinite(part.positions);
         if (nonfinite.count > 0 && extent.nonfinite == 0)
@@ -63,10 +108,7 @@ void join(const CloudExtent& next, CloudExtent& extent) {
     if (extent.points > 0 && next.points > 0 && extent.has_normals != next.has_normals)
         refuse_in_tiles("some parts of the cloud have normals and others have none");
     extent.has_normals = next.points > 0 ? next.has_normals : extent.has_normals;
-    if (next.points > 0) {
-        join(next.scanners, extent.points > 0, extent.scanners);
-        extent.attributes.join(next.attributes, extent.points > 0);
-    }
+    if (next.points > 0) extent.attributes.join(next.attributes, extent.points > 0);
     if (extent.nonfinite == 0) extent.first_nonfinite = extent.points + next.first_nonfinite;
     extent.nonfinite += next.nonfinite;
     extent.points += next.points;
@@ -75,23 +117,56 @@ void join(const CloudExtent& next, CloudExtent& extent) {
 
 } // namespace
 
+std::span<const Vec3> scanners_in(const PointView& part) {
+    if (!part.sensors.empty() || !part.sensor) return part.sensors;
+    return {&*part.sensor, 1};
+}
+
+std::int32_t scanner_of(const PointView& part, std::size_t point) {
+    const std::size_t count = scanners_in(part).size();
+    const double number = part.sensor_of.count == 0 ? 0 : number_at(part.sensor_of, point, 0);
+    return number >= 0 && number < static_cast<double>(count) ? static_cast<std::int32_t>(number) : -1;
+}
+
 CloudScanners CloudScanners::placed(const CloudFrame& frame, const Vec3& origin) const {
     CloudScanners result = *this;
-    for (std::optional<Vec3>* const place : {&result.sensor, &result.viewpoint})
-        if (*place) **place = frame.to_work(**place) - origin;
+    const auto place = [&](Vec3& at) { at = frame.to_work(at) - origin; };
+    if (result.sensor) place(*result.sensor);
+    for (Vec3& at : result.sensors) place(at);
     return result;
 }
 
 void CloudScanners::move(const Vec3& by) {
-    for (std::optional<Vec3>* const place : {&sensor, &viewpoint})
-        if (*place) **place += by;
+    if (sensor) *sensor += by;
+    for (Vec3& at : sensors) at += by;
 }
 
 OrientOptions CloudScanners::orientation() const {
     OrientOptions options;
     options.sensor = sensor;
-    if (viewpoint) options.viewpoints.sensors.push_back(*viewpoint);
+    options.viewpoints.sensors = sensors;
     return options;
+}
+
+std::vector<std::int32_t> CloudScanners::numbers_in(const PointView& part) const {
+    std::vector<std::int32_t> numbers;
+    for (const Vec3& place : scanners_in(part)) {
+        const auto known = std::ranges::find(sensors, place);
+        numbers.push_back(known == sensors.end() ? -1 : static_cast<std::int32_t>(known - sensors.begin()));
+    }
+    return numbers;
+}
+
+void CloudScanners::put(Ranks::Bytes& bytes) const {
+    hsdm::put(sensor, bytes);
+    put_vector(sensors, bytes);
+}
+
+CloudScanners CloudScanners::from(ByteReader& bytes) {
+    CloudScanners scanners;
+    scanners.sensor = bytes.take<std::optional<Vec3>>();
+    scanners.sensors = bytes.take_vector<Vec3>();
+    return scanners;
 }
 
 void refuse_in_tiles(const std::string& what) {
@@ -100,13 +175,17 @@ void refuse_in_tiles(const std::string& what) {
 }
 
 CloudExtent measure_extent(const PointParts& parts, Ranks& ranks) {
-    CloudExtent own = extent_of_part(parts), extent;
+    JoinedScanners scanners, of_all;
+    CloudExtent own = extent_of_part(parts, scanners), extent;
     Ranks::Bytes bytes;
     put_extent(own, bytes);
+    scanners.put(bytes);
     for (const Ranks::Bytes& got : ranks.gather(bytes)) {
         ByteReader reader(got);
         join(extent_from(reader), extent);
+        of_all.join(JoinedScanners::from(reader));
     }
+    extent.scanners = of_all.known(), extent.attributes.scanners = of_all.are_several();
     extent.sample = std::move(own.sample);
     extent.sample_stride = own.sample_stride;
     if (extent.points == 0) throw Error("the cloud holds no point; nothing can be reconstructed");
@@ -126,7 +205,7 @@ void put_extent(const CloudExtent& extent, Ranks::Bytes& bytes) {
     for (const std::size_t count : {extent.points, extent.nonfinite, extent.first_nonfinite})
         put(count, bytes);
     put(extent.box, bytes);
-    put(extent.has_normals, bytes), put(extent.scanners, bytes);
+    put(extent.has_normals, bytes), extent.scanners.put(bytes);
     extent.attributes.put(bytes);
 }
 
@@ -135,7 +214,7 @@ CloudExtent extent_from(ByteReader& bytes) {
     for (std::size_t* count : {&extent.points, &extent.nonfinite, &extent.first_nonfinite})
         *count = bytes.take<std::size_t>();
     extent.box = bytes.take<Box>();
-    extent.has_normals = bytes.take<bool>(), extent.scanners = bytes.take<CloudScanners>();
+    extent.has_normals = bytes.take<bool>(), extent.scanners = CloudScanners::from(bytes);
     extent.attributes = CloudAttributes::from(bytes);
     return extent;
 }

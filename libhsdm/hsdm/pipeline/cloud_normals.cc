@@ -107,7 +107,7 @@ void clean(ScratchCloud& cloud, CloudSurvey& survey, const CloudPasses& passes, 
 
 Ranks::Bytes bytes_of_begun(const Begun& begun) {
     Ranks::Bytes bytes;
-    put(begun.is_sided, bytes), put(begun.report, bytes), put(begun.how, bytes), put(begun.scanners, bytes);
+    put(begun.is_sided, bytes), put(begun.report, bytes), put(begun.how, bytes), begun.scanners.put(bytes);
     put_vector(begun.signs.number, bytes), put_vector(begun.signs.sign, bytes);
     put(begun.signs.report, bytes);
     return bytes;
@@ -118,7 +118,7 @@ Begun begun_from(const Ranks::Bytes& bytes) {
     Begun begun;
     begun.is_sided = reader.take<bool>();
     begun.report = reader.take<NormalsReport>(), begun.how = reader.take<Estimating>(),
-    begun.scanners = reader.take<CloudScanners>();
+    begun.scanners = CloudScanners::from(reader);
     begun.signs.number = reader.take_vector<Index>(), begun.signs.sign = reader.take_vector<std::int8_t>();
     begun.signs.report = reader.take<OrientReport>();
     return begun;

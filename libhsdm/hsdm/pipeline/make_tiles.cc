@@ -144,7 +144,7 @@ private:
             known_.largest,
             [&](MortonCode code) { return range.holds(code); },
             [&](MortonCode code) { return range.is_near(morton_decode(code), ghost / 2); }};
-        return make_piece(in, part, range, cloud_.attributes());
+        return make_piece(in, part, range, cloud_.attributes().of_vertices());
     }
 
     /// Once all tiles have looked for them: all is different without them.

@@ -133,7 +133,8 @@ public:
         phases_.run("tiles", 0.2, report_.seconds.facets, [&] { make_facets(group); });
         note_options(estimates_, options_, report_); // this run's, whatever was kept
         note_left_out(cloud_->extent().attributes.left_out, report_);
-        if (cloud_->extent().scanners.viewpoint) report_.options["sensors"] = "1";
+        if (const std::size_t known = cloud_->extent().scanners.sensors.size(); known > 0)
+            report_.options["sensors"] = std::to_string(known);
     }
 
     /// What finish(input, facets, report) makes of the facets; nothing on other ranks than the first.
@@ -237,7 +238,7 @@ private:
         const int depth = options_.depth.value_or(depth_for_cells(extent.finite()));
         const bool given = extent.has_normals && options_.normals != NormalSource::estimate;
         estimates_ = !given;
-        check_normals_of(extent);
+        check_normals_asked_for();
         cloud_.emplace(parts, extent, depth, tiles_, ranks_, given);
     }
 
@@ -247,23 +248,16 @@ private:
         duplicates_ = cloud_->extent().finite() - survey_->sums.points();
     }
 
-    void check_normals_of(const CloudExtent& extent) const {
+    void check_normals_asked_for() const {
         if (!estimates_) return;
         if (options_.normals == NormalSource::given)
             throw Error("normals given were asked for, but the cloud has none; use --normals auto or "
                         "estimate");
-        refuse_many(extent.scanners);
     }
 
-    /// Relative to the cube. To be called where normals are turned towards them.
+    /// Relative to the cube.
     CloudScanners scanners() const {
-        const CloudScanners& known = cloud_->extent().scanners;
-        refuse_many(known);
-        return known.placed(cloud_->frame(), cloud_->origin());
-    }
-    static void refuse_many(const CloudScanners& scanners) {
-        if (scanners.are_many)
-            refuse_in_tiles("several scanners are known, and normals have to face that of each point");
+        return cloud_->extent().scanners.placed(cloud_->frame(), cloud_->origin());
     }
 
     void estimate_normals(std::size_t group) {

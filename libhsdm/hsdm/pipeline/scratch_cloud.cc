@@ -188,6 +188,7 @@ void ScratchCloud::sort_points(const PointParts& parts) {
     std::vector<char> beside(attributes_.bytes());
     parts([&](const PointView& part) {
         const std::vector<PointAttribute> attributes = attributes_.in(part);
+        const std::vector<std::int32_t> scanners = extent_.scanners.numbers_in(part);
         const std::vector<Index> cells =
             cells_of(part.size(), [&](Index i) { return vec3_at(part.positions, i) - origin(); });
         for_each_in_order(part.size(), [&](std::size_t i) {
@@ -195,6 +196,11 @@ void ScratchCloud::sort_points(const PointParts& parts) {
             const Vec3 n = has_normals_ ? vec3_at(part.normals, i) : Vec3(0, 0, 0);
             if (!is_finite(p)) return;
             attributes_.write(attributes, static_cast<Index>(i), beside.data());
+            if (attributes_.has_scanners()) {
+                const std::int32_t own = scanner_of(part, i);
+                attributes_.set_scanner(beside.data(),
+                                        own < 0 ? -1 : scanners[static_cast<std::size_t>(own)]);
+            }
             put_row({p[0], p[1], p[2], n[0], n[1], n[2]}, beside.data(), cells[i], exchange);
             ++added;
         });

@@ -94,7 +94,7 @@ public:
           intersections_(facets.known.intersections),
           report_(std::move(report)) {
         result_.mesh = std::move(facets.mesh);
-        result_.rows = in.cloud.attributes(), result_.attributes = std::move(facets.attributes);
+        result_.rows = in.cloud.attributes().of_vertices(), result_.attributes = std::move(facets.attributes);
     }
 
     FlatReconstruction finish() {
@@ -254,7 +254,7 @@ Reconstruction finish_whole(const WholeInput& in, WholeFacets&& facets, Report&&
         facets.known.links = link_facets(facets.mesh);
         check_whole(in, method, facets.mesh, *facets.known.links);
         const auto count = facets.mesh.vertex_count();
-        facets.mesh.properties = in.cloud.attributes().properties_of(facets.attributes);
+        facets.mesh.properties = in.cloud.attributes().of_vertices().properties_of(facets.attributes);
         release(facets.attributes);
         facets.mesh.properties.push_back({level_property, VertexProperty::Type::uint8,
                                           std::vector<double>(count, static_cast<double>(level.depth))});
