@@ -54,6 +54,23 @@ PointCloud painted_torus(bool normals, double noise = 0) {
     return cloud;
 }
 
+/// Either side may be out.
+PointCloud open_sheet(std::size_t points) {
+    PointCloud cloud;
+    support::Random random(5);
+    for (std::size_t i = 0; i < points; ++i) {
+        const double x = random.uniform(-1, 1), y = random.uniform(-1, 1);
+        cloud.positions.emplace_back(x, y, 0.3 * x * x - 0.2 * y * y);
+    }
+    return cloud;
+}
+
+/// Layers that do not register: without the scanners some face the other way.
+PointCloud seen_from_three_places(double noise) {
+    return support::scan_from_above(support::in_general_pose(support::box({1, 0.8, 0.5})), 1,
+                                    {.points = 9000, .positions = 3, .noise = noise, .misalignment = 0.03});
+}
+
 std::string option(const Report& report, const char* name) {
     const auto found = report.options.find(name);
     return found == report.options.end() ? "" : found->second;
@@ -200,34 +217,37 @@ TEST_CASE("a run with colours goes on where one was ended", "[pipeline]") {
 }
 
 TEST_CASE("points face their own scanners in tiles as in one piece", "[pipeline][slow]") {
-    // Layers that do not register: without the scanners some face the other way.
-    PointCloud cloud = support::scan_from_above(support::in_general_pose(support::box({1, 0.8, 0.5})), 1,
-                                                {.points = 5000, .positions = 3, .misalignment = 0.03});
-    ReconstructOptions options{.threads = 2};
+    ReconstructOptions options{.depth = 4, .holes = Holes::keep, .threads = 2};
+    PointCloud cloud = seen_from_three_places(0);
     SECTION("of estimated normals, and some of which no scanner is known") {
         for (std::size_t i = 0; i < cloud.size(); i += 5) cloud.sensor_of[i] = i % 2 == 0 ? -1 : 7;
-        options.depth = 4;
     }
-    SECTION("of points that are moved") {}
+    SECTION("of points that are moved") {
+        cloud = seen_from_three_places(0.02);
+        options.depth.reset();
+    }
     SECTION("of normals that contradict each other, beside a scalar") {
-        options.depth = 4;
-        cloud.normals.resize(cloud.size());
-        for (std::size_t i = 0; i < cloud.size(); ++i)
-            cloud.normals[i] = (cloud.positions[i] * (i % 3 == 0 ? -1 : 1)).normalized();
+        support::Random random(5);
+        cloud = open_sheet(5000);
+        for (std::size_t i = 0; i < cloud.size(); ++i) {
+            const Vec3& p = cloud.positions[i];
+            cloud.normals.push_back(Vec3(-0.6 * p[0], 0.4 * p[1], 1).normalized()
+                                    * (random.uniform() < 0.5 ? -1 : 1));
+            cloud.sensor_of.push_back(static_cast<std::int32_t>(i % 3));
+        }
+        cloud.sensors = {Vec3(0.3, 0.2, -5), Vec3(2, 0, -4), Vec3(0, 3, -4)};
         cloud.scalars = {{"height", std::vector<double>(cloud.size(), 1), false}};
     }
     const Reconstruction whole = check_everywhere(cloud, options);
     CHECK(option(whole.report, "sensors") == "3");
+    CHECK(whole.report.rejected.contains("points_moved") == !options.depth);
+    CHECK((cloud.has_normals() ? whole.report.rejected.at("normals_mended") > 0 : true));
 }
 
 TEST_CASE("parts that tell of their scanners know what joined scans know", "[pipeline]") {
     std::vector<PointCloud> scans(3);
-    support::Random random(5);
-    for (PointCloud& scan : scans)
-        for (int i = 0; i < 900; ++i) {
-            const double x = random.uniform(-1, 1), y = random.uniform(-1, 1);
-            scan.positions.emplace_back(x, y, 0.3 * x * x - 0.2 * y * y); // either side may be out
-        }
+    const PointCloud sheet = open_sheet(2700);
+    for (std::size_t i = 0; i < sheet.size(); ++i) scans[i / 900].positions.push_back(sheet.positions[i]);
     const Vec3 above(0.3, 0.2, 5), below(0.3, 0.2, -5);
     SECTION("one place") {
         for (PointCloud& scan : scans) scan.sensor = below;

@@ -57,8 +57,6 @@ void CloudAttributes::join(const CloudAttributes& next, bool has_some) {
     const auto named = [](const std::vector<Named>& all, const std::string& name) {
         return std::ranges::find(all, name, &Named::name);
     };
-    for (const Named& scalar : next.scalars)
-        if (named(scalars, scalar.name) == scalars.end()) leave_out(scalar.name);
     std::erase_if(scalars, [&](Named& scalar) {
         const auto same = named(next.scalars, scalar.name);
         if (same == next.scalars.end())
@@ -67,6 +65,8 @@ void CloudAttributes::join(const CloudAttributes& next, bool has_some) {
             scalar.is_label = scalar.is_label && same->is_label;
         return same == next.scalars.end();
     });
+    for (const Named& scalar : next.scalars)
+        if (named(scalars, scalar.name) == scalars.end()) leave_out(scalar.name);
 }
 
 void CloudAttributes::put(Ranks::Bytes& bytes) const {
