@@ -1,6 +1,7 @@
 #include "hsdm/pipeline/cell_attributes.hh"
 
 #include "hsdm/core/large_vector.hh"
+#include "hsdm/pipeline/attributes.hh"
 
 #include <algorithm>
 
@@ -19,7 +20,7 @@ const char* CellAttributes::of(const Octree& octree, std::size_t point) {
     const AttributeRows& attributes = cloud_.attributes();
     if (attributes.bytes() == 0) return nullptr;
     const Index number = octree.source[point];
-    const auto others = std::ranges::equal_range(octree.duplicates, number, {}, &Octree::Duplicate::first);
+    const std::span<const Octree::Duplicate> others = duplicates_of(octree, number);
     if (others.empty()) return row(number);
     std::vector<const char*> rows{row(number)}; // equal points are of one cell
     for (const Octree::Duplicate& other : others) rows.push_back(row(other.other));

@@ -5,9 +5,6 @@
 #include "hsdm/errors.hh"
 #include "hsdm/octree/octree.hh"
 
-#include <algorithm>
-#include <utility>
-
 namespace hsdm {
 namespace {
 
@@ -25,61 +22,6 @@ void add_to_sample(const PointView& part, std::size_t before, CloudExtent& exten
         extent.sample_stride *= 2;
     }
 }
-
-/// Scanners of parts that are added one after the other, as JoinedPoints has them.
-struct JoinedScanners {
-    std::vector<Vec3> places{};           ///< each once
-    bool are_sure = false;                ///< some are of PointCloud::sensors
-    bool of_all = true;                   ///< has each point one of them?
-    std::optional<Vec3> sensor{};         ///< of PointCloud::sensor, of all parts
-    bool has_some = false, is_one = true; ///< parts; have all that same sensor?
-
-    static JoinedScanners of(const PointView& part) {
-        JoinedScanners one;
-        for (const Vec3& place : scanners_in(part)) one.add_place(place);
-        one.are_sure = !part.sensors.empty();
-        one.sensor = part.sensor;
-        one.has_some = true;
-        for (std::size_t i = 0; i < part.sensor_of.count && one.of_all; ++i)
-            one.of_all = scanner_of(part, i) >= 0;
-        one.of_all = one.of_all && !one.places.empty();
-        return one;
-    }
-    void add_place(const Vec3& place) {
-        if (std::ranges::find(places, place) == places.end()) places.push_back(place);
-    }
-    void join(const JoinedScanners& next) {
-        if (!next.has_some) return;
-        if (!std::exchange(has_some, true)) sensor = next.sensor;
-        for (const Vec3& place : next.places) add_place(place);
-        are_sure = are_sure || next.are_sure;
-        of_all = of_all && next.of_all;
-        is_one = is_one && next.is_one && sensor == next.sensor;
-    }
-    bool is_single() const { return places.size() == 1 && of_all; }
-    /// Does each point have to say which one saw it?
-    bool are_several() const { return !places.empty() && !is_single() && (are_sure || places.size() > 1); }
-    CloudScanners known() const {
-        CloudScanners scanners;
-        if (are_sure || places.size() > 1) scanners.sensors = places;
-        if (are_sure ? is_one : is_single()) scanners.sensor = are_sure ? sensor : places.front();
-        return scanners;
-    }
-
-    void put(Ranks::Bytes& bytes) const {
-        put_vector(places, bytes);
-        hsdm::put(sensor, bytes);
-        for (const bool is : {are_sure, of_all, has_some, is_one}) hsdm::put(is, bytes);
-    }
-    static JoinedScanners from(ByteReader& bytes) {
-        JoinedScanners scanners;
-        scanners.places = bytes.take_vector<Vec3>();
-        scanners.sensor = bytes.take<std::optional<Vec3>>();
-        for (bool* const is : {&scanners.are_sure, &scanners.of_all, &scanners.has_some, &scanners.is_one})
-            *is = bytes.take<bool>();
-        return scanners;
-    }
-};
 
 /// What this rank finds in its part.
 CloudExtent extent_of_part(const PointParts& parts, JoinedScanners& scanners) {
@@ -116,58 +58,6 @@ void join(const CloudExtent& next, CloudExtent& extent) {
 }
 
 } // namespace
-
-std::span<const Vec3> scanners_in(const PointView& part) {
-    if (!part.sensors.empty() || !part.sensor) return part.sensors;
-    return {&*part.sensor, 1};
-}
-
-std::int32_t scanner_of(const PointView& part, std::size_t point) {
-    const std::size_t count = scanners_in(part).size();
-    const double number = part.sensor_of.count == 0 ? 0 : number_at(part.sensor_of, point, 0);
-    return number >= 0 && number < static_cast<double>(count) ? static_cast<std::int32_t>(number) : -1;
-}
-
-CloudScanners CloudScanners::placed(const CloudFrame& frame, const Vec3& origin) const {
-    CloudScanners result = *this;
-    const auto place = [&](Vec3& at) { at = frame.to_work(at) - origin; };
-    if (result.sensor) place(*result.sensor);
-    for (Vec3& at : result.sensors) place(at);
-    return result;
-}
-
-void CloudScanners::move(const Vec3& by) {
-    if (sensor) *sensor += by;
-    for (Vec3& at : sensors) at += by;
-}
-
-OrientOptions CloudScanners::orientation() const {
-    OrientOptions options;
-    options.sensor = sensor;
-    options.viewpoints.sensors = sensors;
-    return options;
-}
-
-std::vector<std::int32_t> CloudScanners::numbers_in(const PointView& part) const {
-    std::vector<std::int32_t> numbers;
-    for (const Vec3& place : scanners_in(part)) {
-        const auto known = std::ranges::find(sensors, place);
-        numbers.push_back(known == sensors.end() ? -1 : static_cast<std::int32_t>(known - sensors.begin()));
-    }
-    return numbers;
-}
-
-void CloudScanners::put(Ranks::Bytes& bytes) const {
-    hsdm::put(sensor, bytes);
-    put_vector(sensors, bytes);
-}
-
-CloudScanners CloudScanners::from(ByteReader& bytes) {
-    CloudScanners scanners;
-    scanners.sensor = bytes.take<std::optional<Vec3>>();
-    scanners.sensors = bytes.take_vector<Vec3>();
-    return scanners;
-}
 
 void refuse_in_tiles(const std::string& what) {
     throw RefusedInTiles(

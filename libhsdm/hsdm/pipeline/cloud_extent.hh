@@ -3,38 +3,14 @@
 
 #include "hsdm/cloud/cloud_frame.hh"
 #include "hsdm/core/ranks.hh"
-#include "hsdm/normals/orient_normals.hh"
 #include "hsdm/pipeline/attribute_rows.hh"
+#include "hsdm/pipeline/cloud_scanners.hh"
 #include "hsdm/pipeline/reconstruct_in_tiles.hh"
-
-#include <optional>
-#include <span>
 
 namespace hsdm {
 
 /// Throws RefusedInTiles of a cloud that can be reconstructed, but not in tiles.
 [[noreturn]] void refuse_in_tiles(const std::string& what);
-
-/// What is known of where the points were seen from.
-struct CloudScanners {
-    std::optional<Vec3> sensor{}; ///< as PointCloud::sensor
-    std::vector<Vec3> sensors{};  ///< as PointCloud::sensors, each place once
-
-    /// Of the cloud -> relative to the cube there.
-    CloudScanners placed(const CloudFrame& frame, const Vec3& origin) const;
-    void move(const Vec3& by);
-    /// Which of the sensors saw a point is not told by it.
-    OrientOptions orientation() const;
-    /// Of a part of the cloud, by its own numbers, the numbers that its scanners have here, or -1.
-    std::vector<std::int32_t> numbers_in(const PointView& part) const;
-    void put(Ranks::Bytes& bytes) const;
-    static CloudScanners from(ByteReader& bytes);
-};
-
-/// The scanners that a part of a cloud tells of: those of PointCloud::sensors, or that of PointCloud::sensor.
-std::span<const Vec3> scanners_in(const PointView& part);
-/// By its own numbers, which of them saw a point; -1: none.
-std::int32_t scanner_of(const PointView& part, std::size_t point);
 
 /// What a pass over the points finds.
 struct CloudExtent {
