@@ -22,10 +22,10 @@ std::size_t bytes_buffered(const TileOptions& options) {
     return std::clamp(options.memory / 16, std::size_t{1} << 20, std::size_t{1} << 26);
 }
 
-/// Points that wait to be sent, at most; what comes takes as much again.
-std::size_t points_waiting(const TileOptions& options) {
+/// Points that wait to be sent, at most, each with so many bytes beside it; what comes takes as much again.
+std::size_t points_waiting(const TileOptions& options, std::size_t beside) {
     constexpr std::size_t most = std::size_t{1} << 20;
-    return std::min(most, bytes_buffered(options) / sizeof(PointRow));
+    return std::min(most, bytes_buffered(options) / (sizeof(PointRow) + beside));
 }
 
 OctreeOptions octree_options(bool use_normals, const Box& whole) {
@@ -50,7 +50,7 @@ ScratchCloud::ScratchCloud(const PointParts& parts, const CloudExtent& extent, i
       attributes_(extent.attributes),
       depth_(depth),
       cell_depth_(cell_depth_of(depth)),
-      most_waiting_(points_waiting(options)),
+      most_waiting_(points_waiting(options, attributes_.bytes())),
       kept_(options.kept),
       place_(new_place(kept_, options.scratch)),
       buffered_(bytes_buffered(options)),
@@ -74,7 +74,7 @@ ScratchCloud::ScratchCloud(ByteReader& bytes, const TileOptions& options, Ranks&
       frame_(extent_.box),
       depth_(bytes.take<int>()),
       cell_depth_(cell_depth_of(depth_)),
-      most_waiting_(points_waiting(options)),
+      most_waiting_(points_waiting(options, AttributeRows(extent_.attributes).bytes())),
       kept_(options.kept),
       buffered_(bytes_buffered(options)),
       ranks_(ranks) {
