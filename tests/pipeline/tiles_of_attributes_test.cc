@@ -126,7 +126,6 @@ TEST_CASE("colours and scalars come to the vertices of tiles as in one piece", "
         CHECK(names.starts_with("red green blue alpha intensity part hsdm_level "));
     }
     SECTION("of estimated normals") {
-        options.depth = GENERATE(std::optional<int>(), std::optional<int>(5));
         check_everywhere(painted_torus(false), options);
     }
     SECTION("of points that are moved") {
