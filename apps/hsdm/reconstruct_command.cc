@@ -430,7 +430,10 @@ private:
     }
 
     static std::size_t bytes_of_cloud(const PointCloud& cloud) {
-        return cloud.positions.size() * sizeof(Vec3) + cloud.normals.size() * sizeof(Vec3);
+        return cloud.positions.size() * sizeof(Vec3) + cloud.normals.size() * sizeof(Vec3)
+               + cloud.colors.size() * sizeof(cloud.colors.front())
+               + cloud.scalars.size() * cloud.positions.size() * sizeof(double)
+               + cloud.sensor_of.size() * sizeof(cloud.sensor_of.front());
     }
 
     MeshTarget target(const Report& report) const {

@@ -1,6 +1,7 @@
 // Reconstructing in bounded memory when things go wrong: nothing is lost, and nothing is left behind.
 #include "cli/run.hh"
 #include "support/sample.hh"
+#include "support/scanner.hh"
 #include "support/uneven.hh"
 
 #include <catch2/catch.hpp>
@@ -51,6 +52,35 @@ TEST_CASE("a disk that is full ends bounded memory with a message, and old files
     CHECK(result.err.find("too large") != std::string::npos);
     CHECK(job.left_nothing());
     CHECK(list(job.folder) == "old.ply\nscan.ply\nscratch\n");
+}
+
+TEST_CASE("colours, labels and scanners are those of one piece in bounded memory", "[cli][tiles]") {
+    const PointCloud cloud = support::scan_from_above(
+        support::box({1, 0.8, 0.5}), 1, {.points = 12000, .positions = 2, .misalignment = 0.02});
+    std::ostringstream text;
+    text.precision(17);
+    text << "x y z red green blue label nr\n";
+    for (std::size_t i = 0; i < cloud.size(); ++i) {
+        const Vec3& p = cloud.positions[i];
+        text << p[0] << ' ' << p[1] << ' ' << p[2] << ' ' << i % 256 << " 9 " << i % 7 << ' ' << i % 3 << ' '
+             << cloud.sensor_of[i] << '\n';
+    }
+    std::ostringstream call;
+    call.precision(17);
+    call << "reconstruct scan.xyz --depth 5 --holes keep --sensor-column nr";
+    for (const Vec3& place : cloud.sensors)
+        call << " --sensor " << place[0] << ',' << place[1] << ',' << place[2];
+    Folder folder;
+    folder.write("scan.xyz", text.str());
+    REQUIRE(run(folder, call.str() + " --quiet -o one.ply").status == 0);
+    const CommandResult result =
+        run(folder, call.str() + " --memory 76M -o tiles.ply --report report.json --scratch .");
+    INFO(result.err);
+    CHECK(result.status == 0);
+    CHECK(read_file(folder / "one.ply") == read_file(folder / "tiles.ply"));
+    const std::string report = read_file(folder / "report.json");
+    CHECK(report.find("\"sensors\": \"2\"") != std::string::npos);
+    CHECK(report.find("\"tiles\": ") != std::string::npos);
 }
 
 TEST_CASE("two jobs share a folder for scratch", "[cli][tiles]") {

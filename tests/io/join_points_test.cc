@@ -155,3 +155,54 @@ TEST_CASE("a share of one file in memory is some of its points", "[io]") {
         points.visit_share(share, 2, [&](const PointCloud& part) { sizes.push_back(part.size()); });
     CHECK(sizes == std::vector<std::size_t>{1, 2});
 }
+
+TEST_CASE("points in parts tell of the scanners that all at once tell of", "[io]") {
+    const support::Folder folder;
+    const auto sensors_in = [](const PointsInParts& points, int shares) {
+        std::vector<std::optional<Vec3>> sensors;
+        for (int share = 0; share < shares; ++share)
+            points.visit_share(share, shares,
+                               [&](const PointCloud& part) { sensors.push_back(part.sensor); });
+        return sensors;
+    };
+    SECTION("the camera of a PLY file") {
+        PointCloud cloud = support::sample(support::sphere(1), {.points = 20});
+        support::write_ply(folder / "scan.ply", cloud);
+        std::string text = support::read_file(folder / "scan.ply");
+        const std::size_t end = text.find("end_header");
+        text.insert(end, "element camera 1\nproperty double view_px\nproperty double view_py\n"
+                         "property double view_pz\n");
+        const double place[3] = {1, 2, 3};
+        text.append(reinterpret_cast<const char*>(place), sizeof place);
+        folder.write("scan.ply", text);
+        REQUIRE(read_points(folder / "scan.ply").cloud.sensor == Vec3(1, 2, 3));
+        for (const auto& sensor : sensors_in({folder / "scan.ply", {}}, 2)) CHECK(sensor == Vec3(1, 2, 3));
+    }
+    SECTION("those that are asked for, by a column") {
+        folder.write("scan.xyz", "x y z nr\n1 2 3 0\n4 5 6 1\n7 8 9 2\n7 8 7 1\n");
+        PointCloud cloud = read_points(folder / "scan.xyz").cloud;
+        const ReadOptions options{.sensors = {Vec3(0, 0, 9), Vec3(0, 9, 0)}, .sensor_column = "nr"};
+        std::vector<std::int32_t> numbers;
+        const PointsInParts points(folder / "scan.xyz", options);
+        for (int share = 0; share < 2; ++share)
+            points.visit_share(share, 2, [&](const PointCloud& part) {
+                CHECK(part.sensors == options.sensors);
+                numbers.insert(numbers.end(), part.sensor_of.begin(), part.sensor_of.end());
+            });
+        CHECK(numbers == std::vector<std::int32_t>{0, 1, -1, 1});
+    }
+    SECTION("none of several PTX files at one place, which were moved already") {
+        const auto scan = [](const char* place) {
+            return "1\n2\n" + std::string(place) + "\n1 0 0\n0 1 0\n0 0 1\n1 0 0 0\n0 1 0 0\n0 0 1 0\n"
+                   + place + " 1\n1 1 1 0.5\n2 2 2 0.5\n";
+        };
+        folder.write("a.ptx", scan("5 0 0"));
+        folder.write("b.ptx", scan("5 0 0"));
+        folder.write("c.ptx", scan("6 0 0"));
+        const auto of = [&](const char* one, const char* other) {
+            return sensors_in({{folder / one, folder / other}, {}}, 1);
+        };
+        CHECK(of("a.ptx", "b.ptx") == std::vector<std::optional<Vec3>>(2));
+        CHECK(of("a.ptx", "c.ptx") == std::vector<std::optional<Vec3>>{Vec3(5, 0, 0), Vec3(6, 0, 0)});
+    }
+}

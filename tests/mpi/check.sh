@@ -69,19 +69,27 @@ for count in 1 2 3; do
     cmp one-of-all.ply ranks.ply || fail "$count processes write another mesh of several files"
 done
 
-# What tiles cannot do the first process does alone.
+# A scalar goes to the vertices.
 printf 'ply\nformat binary_little_endian 1.0\nelement vertex 30000\n' >scalar.ply
 for name in x y z nx ny height; do printf 'property double %s\n' $name >>scalar.ply; done
 printf 'end_header\n' >>scalar.ply
 tail -c 1440000 scan.ply >>scalar.ply
 "$hsdm" reconstruct scalar.ply --depth 6 -o one-scalar.ply --quiet
-by 3 scalar.ply --depth 6 -o ranks.ply --scratch scratch --threads 1 --resume --report report.json ||
-    fail "3 processes, a scalar: status $?"
-cmp one-scalar.ply ranks.ply || fail "the first process alone writes another mesh"
-grep -q '"tiles": "none, by the first rank alone: the cloud has colours or scalars"' report.json &&
-    grep -q "^ranks     the first one alone, in one piece: the cloud has" out || fail "that it did is not told"
-[ -z "$(ls -A scratch)" ] || fail "scratch is left of what was given up"
+by 3 scalar.ply --depth 6 -o ranks.ply --scratch scratch --threads 1 || fail "3 processes, a scalar: status $?"
+cmp one-scalar.ply ranks.ply || fail "3 processes write another mesh of a scan with a scalar"
+grep -q "^ranks     the first one alone" out && fail "the first process did a scan with a scalar alone"
 rm scalar.ply
+
+# What tiles cannot do the first process does alone.
+tail -c 1440000 scan.ply | od -An -v -w48 -t f8 | awk '{ print $1 * 1e15, $2 * 1e15, $3 * 1e15, $4, $5, $6 }' >huge.xyz
+"$hsdm" reconstruct huge.xyz --depth 6 -o one-huge.ply --quiet
+by 3 huge.xyz --depth 6 -o ranks.ply --scratch scratch --threads 1 --resume --report report.json ||
+    fail "3 processes, of extreme size: status $?"
+cmp one-huge.ply ranks.ply || fail "the first process alone writes another mesh"
+grep -q '"tiles": "none, by the first rank alone: the cloud is of extreme size"' report.json &&
+    grep -q "^ranks     the first one alone, in one piece: the cloud is" out || fail "that it did is not told"
+[ -z "$(ls -A scratch)" ] || fail "scratch is left of what was given up"
+rm huge.xyz
 "$hsdm" reconstruct scan.ply --max-error 1% -o one-adaptive.ply --quiet
 by 3 scan.ply --max-error 1% -o ranks.ply --scratch scratch --threads 1 || fail "3 processes, --max-error: status $?"
 cmp one-adaptive.ply ranks.ply || fail "the first process alone writes another adaptive mesh"

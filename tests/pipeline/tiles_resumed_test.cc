@@ -28,6 +28,10 @@ PointCloud torus(bool normals, double noise = 0) {
     // is left out; one that is told by its distance alone lies beyond the others
     cloud.positions.push_back({0.03, 0.02, normals ? 0.01 : 0.9});
     if (normals) cloud.normals.push_back({0, 0, 1});
+    if (!normals) {
+        cloud.sensors = {Vec3(0, 0, 5), Vec3(1, 0, -5)};
+        for (const Vec3& p : cloud.positions) cloud.sensor_of.push_back(p[2] > 0 ? 0 : 1);
+    }
     return cloud;
 }
 

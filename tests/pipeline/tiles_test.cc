@@ -319,9 +319,9 @@ TEST_CASE("facets that pass through each other are parted by all tiles together"
 TEST_CASE("what tiles cannot tell is refused, with the reason", "[pipeline][slow]") {
     PointCloud cloud = scan_for_tiles(false);
     const TileOptions tiles = tiles_of(25000);
-    SECTION("colours") {
-        cloud.colors.resize(cloud.size());
-        CHECK(refusal(cloud, tiles).find("colours") != std::string::npos);
+    SECTION("extreme size") {
+        for (Vec3& p : cloud.positions) p *= 0x1p40;
+        CHECK(refusal(cloud, tiles).find("extreme size") != std::string::npos);
     }
     SECTION("too little memory for the mesh") {
         TileOptions small;
@@ -342,10 +342,17 @@ TEST_CASE("what tiles cannot tell is refused, with the reason", "[pipeline][slow
 }
 
 TEST_CASE("points that change between two passes are an error", "[pipeline]") {
-    const PointCloud cloud = scan_for_tiles(false);
-    PointCloud fewer = cloud;
-    fewer.positions.resize(30000);
-    fewer.normals.resize(30000);
+    PointCloud cloud = scan_for_tiles(false), fewer = cloud;
+    SECTION("in number") {
+        fewer.positions.resize(30000);
+        fewer.normals.resize(30000);
+    }
+    SECTION("in their colours") {
+        cloud.colors.resize(cloud.size());
+    }
+    SECTION("in their scalars") {
+        cloud.scalars = {{"height", std::vector<double>(cloud.size()), false}};
+    }
     int pass = 0;
     const PointParts parts = [&](const auto& visit) { visit(view_of(pass++ == 0 ? cloud : fewer)); };
     CHECK_THROWS_AS(reconstruct_in_tiles(parts, {.depth = 6}, tiles_of(25000)), Error);

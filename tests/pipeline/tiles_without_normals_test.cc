@@ -127,11 +127,6 @@ TEST_CASE("what tiles cannot tell of a cloud without normals is refused", "[pipe
         return "";
     };
     PointCloud cloud = support::sample(support::sphere(1), {.points = 5000, .normals = false});
-    SECTION("scanners") {
-        cloud.sensors = {Vec3(0, 0, 5), Vec3(0, 5, 0)};
-        cloud.sensor_of.resize(cloud.size());
-        CHECK(refusal(cloud, tiles_with(3000)).find("scanners") != std::string::npos);
-    }
     SECTION("too little memory for the sides") {
         TileOptions small = tiles_with(3000);
         small.memory = 1000;

@@ -75,9 +75,14 @@ PointParts share_of(const PointCloud& cloud, const Ranks& ranks) {
     return [&cloud, rank = ranks.rank(), size = ranks.size()](const auto& visit) {
         PointCloud part;
         part.sensor = cloud.sensor, part.sensors = cloud.sensors;
+        for (const Scalar& scalar : cloud.scalars) part.scalars.push_back({scalar.name, {}, scalar.is_label});
         for (auto i = static_cast<std::size_t>(rank); i < cloud.size(); i += static_cast<std::size_t>(size)) {
             part.positions.push_back(cloud.positions[i]);
             if (!cloud.normals.empty()) part.normals.push_back(cloud.normals[i]);
+            if (!cloud.colors.empty()) part.colors.push_back(cloud.colors[i]);
+            for (std::size_t s = 0; s < cloud.scalars.size(); ++s)
+                part.scalars[s].values.push_back(cloud.scalars[s].values[i]);
+            if (!cloud.sensor_of.empty()) part.sensor_of.push_back(cloud.sensor_of[i]);
         }
         visit(view_of(part));
     };

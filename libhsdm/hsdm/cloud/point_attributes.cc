@@ -69,4 +69,9 @@ double average_of(Type type, std::vector<WeightedValue>& values) {
     return std::isfinite(mean) ? std::round(mean) : 0; // no value at all: a byte has no other word for it
 }
 
+double average_of_equal(Type type, std::vector<WeightedValue>& values) {
+    const double majority = majority_of(values); // sorts them: sums depend on their order
+    return type == Type::int32 ? majority : average_of(type, values);
+}
+
 } // namespace hsdm

@@ -36,5 +36,7 @@ double majority_of(std::vector<WeightedValue>& values);
 /// What an attribute of that type is where several are: the majority of labels, the mean of others, rounded
 /// for channels of a colour. The values may be gone or in another order then.
 double average_of(VertexProperty::Type type, std::vector<WeightedValue>& values);
+/// The same whatever order they come in.
+double average_of_equal(VertexProperty::Type type, std::vector<WeightedValue>& values);
 
 } // namespace hsdm

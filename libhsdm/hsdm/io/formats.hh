@@ -8,6 +8,9 @@
 
 namespace hsdm::io {
 
+/// Enters the scanners that the caller knows. Throws Error if there is no such column.
+void set_sensors(const SourceBytes& bytes, const ReadOptions& options, PointCloud& cloud);
+
 /// What the file's name or the caller says of a table: decides only what its values leave open.
 enum class TableKind { plain, pts, pwn, xyzrgb };
 
@@ -17,9 +20,10 @@ PointFile read_ply(const SourceBytes& bytes);
 /// The number of a binary file's vertices if these are of one size; nothing for other files.
 std::optional<std::size_t> ply_rows(const SourceBytes& bytes);
 /// Calls visit() with the vertices [begin, end) of a binary file whose vertices are of one size, or those
-/// of them that there are, so many at once; false, and nothing done, for other files.
+/// of them that there are, so many at once, each time with the sensor; false, and nothing done, for other
+/// files.
 bool read_ply_in_parts(const SourceBytes& bytes, std::size_t begin, std::size_t end, std::size_t points,
-                       const std::function<void(const PointCloud&)>& visit);
+                       const std::function<void(PointCloud&&)>& visit);
 /// The points of a PCD file, as text, binary or compressed; those whose coordinates are not finite, pixels
 /// without a measurement, are left out. The sensor is the viewpoint, if that is not zero.
 PointFile read_pcd(const SourceBytes& bytes);
@@ -31,6 +35,8 @@ bool is_pcd(const Text& text);
 PointFile read_ptx(const SourceBytes& bytes);
 /// Whether the text begins with the ten header lines of a PTX scan.
 bool is_ptx(const Text& text);
+/// Where the scanner of the first scan stood; nothing for other files.
+std::optional<Vec3> ptx_scanner(const SourceBytes& bytes);
 /// ASPRS LAS 1.0 to 1.4, uncompressed, every point format: positions, and colour, intensity, classification
 /// and point_source_id where one of them is not zero. Points marked as withheld are left out and counted.
 PointFile read_las(const SourceBytes& bytes);

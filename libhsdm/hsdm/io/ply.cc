@@ -78,14 +78,20 @@ std::optional<std::size_t> ply_rows(const SourceBytes& bytes) {
 }
 
 bool read_ply_in_parts(const SourceBytes& bytes, std::size_t begin, std::size_t end, std::size_t points,
-                       const std::function<void(const PointCloud&)>& visit) {
+                       const std::function<void(PointCloud&&)>& visit) {
     if (!ply_rows(bytes)) return false;
     const PlyVertices found = find_vertices(bytes);
     const auto columns = columns_of(found.text, found.element());
     end = std::min<std::size_t>(end, found.element().count);
-    for (std::size_t first = begin; first < end; first += points)
-        visit(read_ply_binary(bytes, found.header, found.vertex, columns,
-                              {first, std::min(points, end - first)}));
+    const auto camera = find_camera(found.header);
+    std::optional<Vec3> sensor;
+    if (camera) sensor = read_ply_sensor_binary(bytes, found.header, *camera);
+    for (std::size_t first = begin; first < end; first += points) {
+        PointCloud part = read_ply_binary(bytes, found.header, found.vertex, columns,
+                                          {first, std::min(points, end - first)});
+        part.sensor = sensor;
+        visit(std::move(part));
+    }
     return true;
 }
 

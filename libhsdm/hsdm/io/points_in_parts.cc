@@ -24,6 +24,8 @@ PointCloud slice(const PointCloud& cloud, std::size_t begin, std::size_t end) {
     part.colors = slice(cloud.colors, begin, end);
     for (const Scalar& scalar : cloud.scalars)
         part.scalars.push_back({scalar.name, slice(scalar.values, begin, end), scalar.is_label});
+    part.sensor = cloud.sensor, part.sensors = cloud.sensors;
+    part.sensor_of = slice(cloud.sensor_of, begin, end);
     return part;
 }
 
@@ -41,8 +43,9 @@ std::size_t row_at(double byte, std::uint64_t bytes, std::size_t rows) {
 } // namespace
 
 PointsInParts::PointsInParts(std::vector<std::string> paths, const ReadOptions& options) : options_(options) {
-    const bool may_be_parted = (options.format.empty() || options.format == "ply") && options.columns.empty()
-                               && options.sensors.empty();
+    const bool may_be_parted = (options.format.empty() || options.format == "ply") && options.columns.empty();
+    check_options(options);
+    std::vector<Vec3> ptx_scanners;
     for (std::string& path : paths) {
         Source source{std::move(path)};
         if (source.path == "-" && paths.size() > 1)
@@ -55,10 +58,13 @@ PointsInParts::PointsInParts(std::vector<std::string> paths, const ReadOptions& 
         io::SourceBytes bytes = io::SourceBytes::open(source.path);
         source.bytes = std::max<std::uint64_t>(1, bytes.size());
         if (may_be_parted) source.rows = io::ply_rows(bytes);
+        if (const auto scanner = io::ptx_scanner(bytes)) ptx_scanners.push_back(*scanner);
         if (paths.size() == 1 && !source.rows) // at once: a pipe cannot be opened again
             one_.emplace(io::read_points(bytes, options));
         sources_.push_back(std::move(source));
     }
+    moved_ptx_ = ptx_scanners.size() > 1
+                 && std::ranges::count(ptx_scanners, ptx_scanners.front()) == std::ssize(ptx_scanners);
 }
 
 void PointsInParts::visit_share(int share, int shares,
@@ -90,17 +96,20 @@ void PointsInParts::visit_share(int share, int shares,
 void PointsInParts::visit_rows(const Source& source, std::size_t begin, std::size_t end,
                                const std::function<void(const PointCloud&)>& visit) const {
     constexpr std::size_t points_at_once = std::size_t{1} << 18; // some megabytes
-    const auto one = [&](const PointCloud& part) {
+    const io::SourceBytes bytes = io::SourceBytes::open(source.path);
+    const auto one = [&](PointCloud&& part) {
         Interruption::poll();
+        io::set_sensors(bytes, options_, part);
         visit(part);
     };
-    if (!io::read_ply_in_parts(io::SourceBytes::open(source.path), begin, end, points_at_once, one))
+    if (!io::read_ply_in_parts(bytes, begin, end, points_at_once, one))
         throw Error(source.path, "is not the file any more that it was before; leave it until all is done");
 }
 
 PointFile PointsInParts::read(Source& source) const {
     Interruption::poll();
     PointFile file = read_points(source.path, options_);
+    if (moved_ptx_ && file.format == "ptx") file.cloud.sensor.reset();
     if (!std::exchange(source.is_noted, true)) add_notes(file, notes_);
     return file;
 }

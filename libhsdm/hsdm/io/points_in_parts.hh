@@ -25,7 +25,7 @@ public:
     /// Calls visit(part) for all points in their order. Throws Error.
     void visit(const std::function<void(const PointCloud&)>& visit) const { visit_share(0, 1, visit); }
     /// The same of one of several shares of about as many bytes: all together, in their order, are all
-    /// points, each in one. Of a cloud that is in memory copies, without sensors. Reads all of one file alone
+    /// points, each in one. Of a cloud that is in memory copies. Reads all of one file alone
     /// if its points are in memory, and of several those of other formats whose middle is in the share.
     void visit_share(int share, int shares, const std::function<void(const PointCloud&)>& visit) const;
 
@@ -53,6 +53,7 @@ private:
 
     ReadOptions options_;
     mutable std::vector<Source> sources_;
+    bool moved_ptx_ = false;       ///< several begin at one place, which tells of no scanner (JoinedPoints)
     std::optional<PointFile> one_; ///< alone, and in memory
     mutable PointFile notes_;
 };

@@ -123,6 +123,13 @@ bool is_ptx(const Text& text) {
                        [&](std::size_t width) { return !numbers_in(next_line(text, at), width).empty(); });
 }
 
+std::optional<Vec3> ptx_scanner(const SourceBytes& bytes) {
+    const Text text = Text::head_of(bytes);
+    if (!is_ptx(text)) return std::nullopt;
+    const char* at = text.begin;
+    return read_header(text, at).matrix[3];
+}
+
 PointFile read_ptx(const SourceBytes& bytes) {
     const Text text(bytes);
     PointFile file;

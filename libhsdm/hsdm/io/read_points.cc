@@ -190,26 +190,6 @@ PointFile read_as(const SourceBytes& bytes, Format format, TableKind kind, const
     }
 }
 
-/// Enters the scanners that the caller knows.
-void set_sensors(const SourceBytes& bytes, const ReadOptions& options, PointCloud& cloud) {
-    if (options.sensors.empty()) return;
-    cloud.sensor.reset();
-    cloud.sensors = options.sensors;
-    cloud.sensor_of = std::vector<std::int32_t>();
-    if (options.sensor_column.empty()) return;
-    const auto column = std::ranges::find(cloud.scalars, options.sensor_column, &Scalar::name);
-    if (column == cloud.scalars.end())
-        throw Error(bytes.name(), "has no column " + io::quoted(options.sensor_column)
-                                      + " that says which scanner saw a point; name one that it has");
-    cloud.sensor_of.reserve(cloud.size());
-    for (const double number : column->values) {
-        const bool is_one = number >= 0 && number < static_cast<double>(options.sensors.size())
-                            && number == std::floor(number);
-        cloud.sensor_of.push_back(is_one ? static_cast<std::int32_t>(number) : -1);
-    }
-    column->is_label = true; // a vertex takes the scanner of most points
-}
-
 bool takes_columns(Format format) {
     return format == Format::table || format == Format::unknown || format == Format::npy
            || format == Format::npz;
@@ -232,6 +212,25 @@ PointFile read_cloud(const SourceBytes& bytes, const ReadOptions& options) {
 }
 
 } // namespace
+
+void set_sensors(const SourceBytes& bytes, const ReadOptions& options, PointCloud& cloud) {
+    if (options.sensors.empty()) return;
+    cloud.sensor.reset();
+    cloud.sensors = options.sensors;
+    cloud.sensor_of = std::vector<std::int32_t>();
+    if (options.sensor_column.empty()) return;
+    const auto column = std::ranges::find(cloud.scalars, options.sensor_column, &Scalar::name);
+    if (column == cloud.scalars.end())
+        throw Error(bytes.name(), "has no column " + io::quoted(options.sensor_column)
+                                      + " that says which scanner saw a point; name one that it has");
+    cloud.sensor_of.reserve(cloud.size());
+    for (const double number : column->values) {
+        const bool is_one = number >= 0 && number < static_cast<double>(options.sensors.size())
+                            && number == std::floor(number);
+        cloud.sensor_of.push_back(is_one ? static_cast<std::int32_t>(number) : -1);
+    }
+    column->is_label = true; // a vertex takes the scanner of most points
+}
 
 std::string_view mesh_format_of(const SourceBytes& bytes) {
     Format format = recognise(bytes);

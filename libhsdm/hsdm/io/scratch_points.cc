@@ -15,15 +15,17 @@ constexpr std::size_t bytes_waiting = sizeof(PointRow) + 2 * sizeof(Index); // w
 
 } // namespace
 
-ScratchPoints::ScratchPoints(const ScratchPlace& place, std::size_t expected, std::size_t buffered)
-    : file_(place), most_waiting_(buffered / bytes_waiting) {
-    file_.check_room(the_points, expected * sizeof(PointRow));
-    waiting_.reserve(std::min(expected, most_waiting_));
-    waiting_in_.reserve(std::min(expected, most_waiting_));
+ScratchPoints::ScratchPoints(const ScratchPlace& place, std::size_t expected, std::size_t buffered,
+                             std::size_t beside)
+    : file_(place), beside_(beside), most_waiting_(buffered / (bytes_waiting + beside)) {
+    file_.check_room(the_points, expected * (sizeof(PointRow) + beside));
+    const std::size_t waiting = std::min(expected, most_waiting_);
+    waiting_.reserve(waiting), waiting_in_.reserve(waiting), waiting_beside_.reserve(waiting * beside);
 }
 
-ScratchPoints::ScratchPoints(const ScratchPlace& place, ByteReader& index, std::size_t buffered)
-    : file_(place), most_waiting_(buffered / bytes_waiting) {
+ScratchPoints::ScratchPoints(const ScratchPlace& place, ByteReader& index, std::size_t buffered,
+                             std::size_t beside)
+    : file_(place), beside_(beside), most_waiting_(buffered / (bytes_waiting + beside)) {
     for (auto cells = index.take<std::uint64_t>(); cells > 0; --cells) {
         Bucket& bucket = buckets_[bucket_of(index.take<MortonCode>())];
         bucket.points = index.take<std::size_t>();
@@ -51,9 +53,10 @@ const ScratchPoints::Bucket* ScratchPoints::find(MortonCode cell) const {
     return bucket == no_index ? nullptr : &buckets_[bucket];
 }
 
-void ScratchPoints::add(MortonCode cell, const PointRow& point) {
+void ScratchPoints::add(MortonCode cell, const PointRow& point, const char* beside) {
     const Index bucket = bucket_of(cell);
     waiting_.push_back(point);
+    if (beside_ > 0) waiting_beside_.insert(waiting_beside_.end(), beside, beside + beside_);
     waiting_in_.push_back(bucket);
     ++buckets_[bucket].points;
     if (waiting_.size() >= most_waiting_) flush();
@@ -61,7 +64,7 @@ void ScratchPoints::add(MortonCode cell, const PointRow& point) {
 
 void ScratchPoints::finish() {
     flush();
-    waiting_ = std::vector<PointRow>(), waiting_in_ = std::vector<Index>(); // {} would keep their memory
+    release(waiting_, waiting_in_, waiting_beside_);
 }
 
 /// A block for what waits of each cell, in the order of cells; returns their first places, per bucket.
@@ -72,7 +75,8 @@ std::vector<Index> ScratchPoints::places_of_blocks() {
     for (const Index bucket : bucket_of_) {
         if (bucket == no_index || place[bucket] == 0) continue;
         const Index count = std::exchange(place[bucket], next);
-        buckets_[bucket].blocks.push_back({file_.size() + next * sizeof(PointRow), count});
+        const std::size_t beside = file_.size() + waiting_.size() * sizeof(PointRow) + next * beside_;
+        buckets_[bucket].blocks.push_back({file_.size() + next * sizeof(PointRow), beside, count});
         next += count;
     }
     return place;
@@ -89,7 +93,16 @@ void ScratchPoints::flush() {
         for_each_index(rows.size(), chunks::quick, [&](Index i) { rows[i] = waiting_[order[begin + i]]; });
         file_.append(the_points, rows);
     }
-    waiting_.clear(), waiting_in_.clear();
+    if (beside_ > 0) flush_beside(order);
+    waiting_.clear(), waiting_in_.clear(), waiting_beside_.clear();
+}
+
+void ScratchPoints::flush_beside(const std::vector<Index>& order) {
+    std::vector<char> bytes = unwritten_vector<char>(waiting_beside_.size());
+    for_each_index(order.size(), chunks::quick, [&](Index i) {
+        std::copy_n(waiting_beside_.data() + order[i] * beside_, beside_, bytes.data() + i * beside_);
+    });
+    file_.append(the_points, bytes);
 }
 
 std::vector<ScratchPoints::Cell> ScratchPoints::cells() const {
@@ -109,6 +122,16 @@ void ScratchPoints::read(MortonCode cell, std::vector<PointRow>& points) const {
         const std::size_t at = points.size();
         resize_unwritten(points, at + block.points);
         file_.read(block.offset, points.data() + at, block.points * sizeof(PointRow));
+    }
+}
+
+void ScratchPoints::read_beside(MortonCode cell, std::vector<char>& bytes) const {
+    const Bucket* const found = find(cell);
+    resize_unwritten(bytes, found ? found->points * beside_ : 0);
+    std::size_t at = 0;
+    for (const Block& block : found ? std::span(found->blocks) : std::span<const Block>()) {
+        file_.read(block.beside, bytes.data() + at, block.points * beside_);
+        at += block.points * beside_;
     }
 }
 

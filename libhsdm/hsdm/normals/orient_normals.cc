@@ -96,13 +96,13 @@ const Vec3* Viewpoints::of(Index source) const {
                : nullptr;
 }
 
-std::vector<float> seen_by_sensors(const Octree& octree, const Patches& patches,
-                                   const Viewpoints& viewpoints) {
+std::vector<float> seen_by_sensors(const Octree& octree, const Patches& patches, const Viewpoints& viewpoints,
+                                   std::span<const Index> source) {
     constexpr double grazing = 0.1; // a cosine: at such angles noise of the normal decides
     std::vector<float> votes = large_vector<float>(viewpoints.sensors.empty() ? 0 : patches.size(), 0);
     for_each_in_order(votes.empty() ? 0 : octree.size(), [&](std::size_t i) {
         const Index p = patches.of_point[i];
-        const Vec3* sensor = p == no_index ? nullptr : viewpoints.of(octree.source[i]);
+        const Vec3* sensor = p == no_index ? nullptr : viewpoints.of(source[i]);
         if (sensor == nullptr) return;
         const Vec3 way = *sensor - octree.positions[i];
         const double cosine = (patches.normals[p] | way) / way.norm();
@@ -178,7 +178,8 @@ Orientation orient_normals(const Octree& octree, const Neighbors& neighbors, con
     PatchSigns signs;
     run_both(
         [&] {
-            const std::vector<float> seen_by = seen_by_sensors(octree, patches, options.viewpoints);
+            const std::vector<float> seen_by =
+                seen_by_sensors(octree, patches, options.viewpoints, octree.source);
             signs = sign_patches(patches, std::move(edges), view, seen_by, options, as_layers);
         },
         meanwhile);

@@ -55,9 +55,9 @@ Orientation orient_normals(
     const OrientOptions& options = {}, const std::function<void()>& meanwhile = [] {});
 
 /// Per patch, how many of its points have their scanner in front of it, less those that have it behind; empty
-/// if none is known.
-std::vector<float> seen_by_sensors(const Octree& octree, const Patches& patches,
-                                   const Viewpoints& viewpoints);
+/// if none is known. `source`: per point, by what the viewpoints tell its scanner.
+std::vector<float> seen_by_sensors(const Octree& octree, const Patches& patches, const Viewpoints& viewpoints,
+                                   std::span<const Index> source);
 
 /// The last step of that, of all patches of a cloud: by the evidence between them, by what they see of the
 /// outside, and by the scanners (per patch, as in Viewpoints; none: empty). evidence_of_layers() is asked

@@ -35,15 +35,11 @@ private:
     /// The value at a place where the cloud has one point or several equal ones, which give one value in any
     /// order.
     double value_at(Index point, const PointAttribute& attribute) const {
-        if (octree_.duplicates.empty()) return attribute(point);
-        const auto [begin, end] = std::equal_range(
-            octree_.duplicates.begin(), octree_.duplicates.end(), Octree::Duplicate{point, 0},
-            [](const auto& a, const auto& b) { return a.first < b.first; });
-        if (begin == end) return attribute(point);
+        const std::span<const Octree::Duplicate> others = duplicates_of(octree_, point);
+        if (others.empty()) return attribute(point);
         std::vector<WeightedValue> values{{attribute(point), 1}};
-        for (auto it = begin; it != end; ++it) values.push_back({attribute(it->other), 1});
-        const double majority = majority_of(values); // sorts them: sums depend on their order
-        return attribute.type == VertexProperty::Type::int32 ? majority : mean_of(values);
+        for (const Octree::Duplicate& equal : others) values.push_back({attribute(equal.other), 1});
+        return average_of_equal(attribute.type, values);
     }
 
     const Octree& octree_;
@@ -52,6 +48,13 @@ private:
 };
 
 } // namespace
+
+std::span<const Octree::Duplicate> duplicates_of(const Octree& octree, Index point) {
+    const auto [begin, end] =
+        std::equal_range(octree.duplicates.begin(), octree.duplicates.end(), Octree::Duplicate{point, 0},
+                         [](const auto& a, const auto& b) { return a.first < b.first; });
+    return {begin, end};
+}
 
 std::vector<VertexProperty> average_attributes(const PointView& cloud, const Octree& octree,
                                                const OctreeLevel& level, std::span<const Index> voxel) {

@@ -6,6 +6,9 @@
 
 namespace hsdm {
 
+/// The points that were merged with one of the cloud, by its index there.
+std::span<const Octree::Duplicate> duplicates_of(const Octree& octree, Index point);
+
 /// A value per vertex v, the average over the points of voxel[v]: red, green, blue and alpha as uint8, every
 /// scalar of the cloud under its own name, but for those that begin with `hsdm_` or have another's name; of
 /// labels the majority's (the least of those in a tie). Beside them `hsdm_level`, the octree level. O(n) per

@@ -23,21 +23,8 @@ void add_to_sample(const PointView& part, std::size_t before, CloudExtent& exten
     }
 }
 
-CloudScanners scanners_of(const PointView& part) {
-    CloudScanners scanners{part.sensor, {}, part.sensors.size() > 1 || part.sensor_of.count > 0};
-    if (!part.sensors.empty()) scanners.viewpoint = part.sensors.front();
-    return scanners;
-}
-
-/// Adds those of more points; `has_some`: of others, that came before.
-void join(const CloudScanners& next, bool has_some, CloudScanners& scanners) {
-    if (!has_some) scanners = next;
-    const bool are_same = scanners.sensor == next.sensor && scanners.viewpoint == next.viewpoint;
-    scanners.are_many = scanners.are_many || next.are_many || !are_same;
-}
-
 /// What this rank finds in its part.
-CloudExtent extent_of_part(const PointParts& parts) {
+CloudExtent extent_of_part(const PointParts& parts, JoinedScanners& scanners) {
     CloudExtent extent;
     parts([&](const PointView& part) {
         check_view(part);
@@ -45,9 +32,8 @@ CloudExtent extent_of_part(const PointParts& parts) {
         if (extent.points > 0 && extent.has_normals != part.has_normals())
             refuse_in_tiles("some parts of the cloud have normals and others have none");
         extent.has_normals = part.has_normals();
-        join(scanners_of(part), extent.points > 0, extent.scanners);
-        if (part.colors.count > 0 || !part.scalars.empty())
-            refuse_in_tiles("the cloud has colours or scalars");
+        scanners.join(JoinedScanners::of(part));
+        extent.attributes.join(CloudAttributes::of(part), extent.points > 0);
         const NonfiniteRows nonfinite = find_nonfinite(part.positions);
         if (nonfinite.count > 0 && extent.nonfinite == 0)
             extent.first_nonfinite = extent.points + nonfinite.first;
@@ -64,7 +50,7 @@ void join(const CloudExtent& next, CloudExtent& extent) {
     if (extent.points > 0 && next.points > 0 && extent.has_normals != next.has_normals)
         refuse_in_tiles("some parts of the cloud have normals and others have none");
     extent.has_normals = next.points > 0 ? next.has_normals : extent.has_normals;
-    if (next.points > 0) join(next.scanners, extent.points > 0, extent.scanners);
+    if (next.points > 0) extent.attributes.join(next.attributes, extent.points > 0);
     if (extent.nonfinite == 0) extent.first_nonfinite = extent.points + next.first_nonfinite;
     extent.nonfinite += next.nonfinite;
     extent.points += next.points;
@@ -73,38 +59,23 @@ void join(const CloudExtent& next, CloudExtent& extent) {
 
 } // namespace
 
-CloudScanners CloudScanners::placed(const CloudFrame& frame, const Vec3& origin) const {
-    CloudScanners result = *this;
-    for (std::optional<Vec3>* const place : {&result.sensor, &result.viewpoint})
-        if (*place) **place = frame.to_work(**place) - origin;
-    return result;
-}
-
-void CloudScanners::move(const Vec3& by) {
-    for (std::optional<Vec3>* const place : {&sensor, &viewpoint})
-        if (*place) **place += by;
-}
-
-OrientOptions CloudScanners::orientation() const {
-    OrientOptions options;
-    options.sensor = sensor;
-    if (viewpoint) options.viewpoints.sensors.push_back(*viewpoint);
-    return options;
-}
-
 void refuse_in_tiles(const std::string& what) {
     throw RefusedInTiles(
         what + "; this is not done in tiles, reconstruct it in one piece (by hsdm, without --memory)");
 }
 
 CloudExtent measure_extent(const PointParts& parts, Ranks& ranks) {
-    CloudExtent own = extent_of_part(parts), extent;
+    JoinedScanners scanners, of_all;
+    CloudExtent own = extent_of_part(parts, scanners), extent;
     Ranks::Bytes bytes;
     put_extent(own, bytes);
+    scanners.put(bytes);
     for (const Ranks::Bytes& got : ranks.gather(bytes)) {
         ByteReader reader(got);
         join(extent_from(reader), extent);
+        of_all.join(JoinedScanners::from(reader));
     }
+    extent.scanners = of_all.known(), extent.attributes.scanners = of_all.are_several();
     extent.sample = std::move(own.sample);
     extent.sample_stride = own.sample_stride;
     if (extent.points == 0) throw Error("the cloud holds no point; nothing can be reconstructed");
@@ -124,7 +95,8 @@ void put_extent(const CloudExtent& extent, Ranks::Bytes& bytes) {
     for (const std::size_t count : {extent.points, extent.nonfinite, extent.first_nonfinite})
         put(count, bytes);
     put(extent.box, bytes);
-    put(extent.has_normals, bytes), put(extent.scanners, bytes);
+    put(extent.has_normals, bytes), extent.scanners.put(bytes);
+    extent.attributes.put(bytes);
 }
 
 CloudExtent extent_from(ByteReader& bytes) {
@@ -132,7 +104,8 @@ CloudExtent extent_from(ByteReader& bytes) {
     for (std::size_t* count : {&extent.points, &extent.nonfinite, &extent.first_nonfinite})
         *count = bytes.take<std::size_t>();
     extent.box = bytes.take<Box>();
-    extent.has_normals = bytes.take<bool>(), extent.scanners = bytes.take<CloudScanners>();
+    extent.has_normals = bytes.take<bool>(), extent.scanners = CloudScanners::from(bytes);
+    extent.attributes = CloudAttributes::from(bytes);
     return extent;
 }
 

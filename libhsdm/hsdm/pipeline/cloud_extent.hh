@@ -3,28 +3,14 @@
 
 #include "hsdm/cloud/cloud_frame.hh"
 #include "hsdm/core/ranks.hh"
-#include "hsdm/normals/orient_normals.hh"
+#include "hsdm/pipeline/attribute_rows.hh"
+#include "hsdm/pipeline/cloud_scanners.hh"
 #include "hsdm/pipeline/reconstruct_in_tiles.hh"
-
-#include <optional>
 
 namespace hsdm {
 
 /// Throws RefusedInTiles of a cloud that can be reconstructed, but not in tiles.
 [[noreturn]] void refuse_in_tiles(const std::string& what);
-
-/// What is known of where the points were seen from.
-struct CloudScanners {
-    std::optional<Vec3> sensor;    ///< as PointCloud::sensor
-    std::optional<Vec3> viewpoint; ///< the one of PointCloud::sensors, that saw all points
-    bool are_many = false;         ///< some saw other points than others
-
-    /// Of the cloud -> relative to the cube there.
-    CloudScanners placed(const CloudFrame& frame, const Vec3& origin) const;
-    void move(const Vec3& by);
-    /// If they are not many.
-    OrientOptions orientation() const;
-};
 
 /// What a pass over the points finds.
 struct CloudExtent {
@@ -33,6 +19,7 @@ struct CloudExtent {
     Box box;                         ///< of those that are finite
     bool has_normals = false;        ///< have all, or none?
     CloudScanners scanners{};
+    CloudAttributes attributes{};
 
     std::size_t finite() const { return points - nonfinite; }
 

@@ -2,6 +2,7 @@
 
 #include "hsdm/core/large_vector.hh"
 #include "hsdm/normals/steady_normals.hh"
+#include "hsdm/pipeline/cell_attributes.hh"
 #include "hsdm/pipeline/cloud_signs.hh"
 
 #include <algorithm>
@@ -46,14 +47,15 @@ NormalSample sample_of_told(ScratchCloud& cloud, const Survey& sums, std::span<c
 template <class Work>
 ScratchCloud with_normals(ScratchCloud& cloud, const Survey& sums, std::span<const VoxelRange> ranges,
                           PartStore& store, const Work& work) {
-    ScratchCloud next = cloud.emptied(true);
+    ScratchCloud next = cloud.emptied(true, true);
+    CellAttributes beside(cloud);
     for_parts(cloud, sums, ranges, store.widths, [&](const CloudPart& part) {
         std::vector<Vec3> normals = part.octree().normals;
         if (!work(part, normals)) return false;
         for (std::size_t i = part.begin(); i < part.end(); ++i) {
             PointRow row = ScratchCloud::row_at(part.octree(), i);
             std::copy_n(normals[i].data(), 3, row.begin() + 3);
-            next.add(part.octree().codes[i], row);
+            next.add(part.octree().codes[i], row, beside.of(part.octree(), i));
         }
         return true;
     });

@@ -67,7 +67,7 @@ std::vector<NoiseSample> samples_of(ScratchCloud& cloud, const Survey& sums, con
 }
 
 ScratchCloud thinned(const ScratchCloud& cloud, const Survey& sums, std::size_t most) {
-    ScratchCloud thin = cloud.emptied(false);
+    ScratchCloud thin = cloud.emptied(false, false);
     const std::vector<Survey::FirstPoint> first = sums.first_points();
     const auto own = std::ranges::find_if(first, [&](const Survey::FirstPoint& of_cell) {
         return cloud.owner(of_cell.cell) == cloud.ranks().rank();

@@ -2,6 +2,7 @@
 
 #include "hsdm/normals/arcs.hh"
 #include "hsdm/normals/noise.hh"
+#include "hsdm/pipeline/cell_attributes.hh"
 #include "hsdm/pipeline/cloud_signs.hh"
 #include "hsdm/pipeline/cloud_smoothing.hh"
 #include "hsdm/pipeline/stray_search.hh"
@@ -15,8 +16,9 @@ namespace {
 /// Gives the parts' points normals with their sides.
 class SidedPass {
 public:
-    SidedPass(const Estimating& how, const SignsOfAll& signs, PartStore& store, ScratchCloud& next)
-        : how_(how), signs_(signs), store_(store), next_(next) {}
+    SidedPass(const Estimating& how, const SignsOfAll& signs, PartStore& store, const ScratchCloud& cloud,
+              ScratchCloud& next)
+        : how_(how), signs_(signs), store_(store), beside_(cloud), next_(next) {}
 
     std::size_t bent = 0, missing = 0; ///< points of this rank, as in NormalsReport
 
@@ -44,7 +46,7 @@ private:
         Octree octree = part.octree();
         octree.normals = std::move(estimate.normals);
         for (std::size_t i = part.begin(); i < part.end(); ++i) {
-            next_.add(octree, i);
+            next_.add(octree, i, beside_.of(octree, i));
             missing += octree.normals[i].sqrnorm() == 0;
         }
         bent += static_cast<std::size_t>(std::ranges::lower_bound(estimate.bent, part.end())
@@ -54,6 +56,7 @@ private:
     const Estimating& how_;
     const SignsOfAll& signs_;
     PartStore& store_;
+    CellAttributes beside_;
     ScratchCloud& next_;
 };
 
@@ -104,7 +107,7 @@ void clean(ScratchCloud& cloud, CloudSurvey& survey, const CloudPasses& passes, 
 
 Ranks::Bytes bytes_of_begun(const Begun& begun) {
     Ranks::Bytes bytes;
-    put(begun.is_sided, bytes), put(begun.report, bytes), put(begun.how, bytes), put(begun.scanners, bytes);
+    put(begun.is_sided, bytes), put(begun.report, bytes), put(begun.how, bytes), begun.scanners.put(bytes);
     put_vector(begun.signs.number, bytes), put_vector(begun.signs.sign, bytes);
     put(begun.signs.report, bytes);
     return bytes;
@@ -115,7 +118,7 @@ Begun begun_from(const Ranks::Bytes& bytes) {
     Begun begun;
     begun.is_sided = reader.take<bool>();
     begun.report = reader.take<NormalsReport>(), begun.how = reader.take<Estimating>(),
-    begun.scanners = reader.take<CloudScanners>();
+    begun.scanners = CloudScanners::from(reader);
     begun.signs.number = reader.take_vector<Index>(), begun.signs.sign = reader.take_vector<std::int8_t>();
     begun.signs.report = reader.take<OrientReport>();
     return begun;
@@ -142,8 +145,8 @@ NormalsReport make_cloud_normals(ScratchCloud& cloud, CloudSurvey& survey, const
         begun.report.orientation = begun.signs.report;
         keep(true);
     }
-    ScratchCloud next = cloud.emptied(true);
-    SidedPass pass(begun.how, begun.signs, store, next);
+    ScratchCloud next = cloud.emptied(true, true);
+    SidedPass pass(begun.how, begun.signs, store, cloud, next);
     const std::vector<VoxelRange> ranges = options.passes.plan(cloud, options.passes.ghost_voxels);
     for_parts(cloud, survey.sums, ranges, store.widths,
               [&](const CloudPart& part) { return pass.add(part); });

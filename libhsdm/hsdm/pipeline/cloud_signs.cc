@@ -4,9 +4,11 @@
 #include "hsdm/errors.hh"
 #include "hsdm/normals/vote_on_normals.hh"
 #include "hsdm/octree/spacing.hh"
+#include "hsdm/pipeline/cell_attributes.hh"
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <optional>
 
 namespace hsdm {
@@ -60,9 +62,11 @@ WholeSpace space_of(const ScratchCloud& cloud, double spacing, std::size_t most)
 class EvidencePass {
 public:
     /// `memory`: bytes that what is found may take, else it throws Error.
-    EvidencePass(const Estimating& how, const Viewpoints& viewpoints, const EmptySpace& space, double spacing,
-                 bool may_be_layers, std::size_t memory, PartStore& store)
-        : how_(how),
+    EvidencePass(const ScratchCloud& cloud, const Estimating& how, const Viewpoints& viewpoints,
+                 const EmptySpace& space, double spacing, bool may_be_layers, std::size_t memory,
+                 PartStore& store)
+        : cloud_(cloud),
+          how_(how),
           viewpoints_(viewpoints),
           space_(space),
           spacing_(spacing),
@@ -102,7 +106,7 @@ public:
             take(made, layer_evidence(part.octree(), made.neighbors, made.estimate, made.patches, begin, end),
                  evidence.layers);
         }
-        const std::vector<float> by_sensors = seen_by_sensors(part.octree(), made.patches, viewpoints_);
+        const std::vector<float> by_sensors = seen_by(part, made.patches);
         for (Index p = first_patch; p < last_patch; ++p)
             take_patch(made, p, seen[p - first_patch], beside[p], by_sensors.empty() ? 0 : by_sensors[p]);
         take(made, patch_evidence(part.octree(), made.neighbors, made.estimate, made.patches, begin, end),
@@ -123,6 +127,18 @@ private:
             if (!part.has_around(at, space_.depth(), depth_of_sight())) return false;
         }
         return true;
+    }
+
+    /// As seen_by_sensors(), of the part's own patches.
+    std::vector<float> seen_by(const CloudPart& part, const Patches& patches) const {
+        const std::vector<std::int32_t> scanners = scanners_of(cloud_, part.octree());
+        if (scanners.empty())
+            return seen_by_sensors(part.octree(), patches, viewpoints_, part.octree().source);
+        const Viewpoints viewpoints{viewpoints_.sensors,
+                                    StridedSpan(scanners.data(), scanners.size(), sizeof(std::int32_t))};
+        std::vector<Index> places = unwritten_vector<Index>(scanners.size());
+        std::iota(places.begin(), places.end(), Index{0});
+        return seen_by_sensors(part.octree(), patches, viewpoints, places);
     }
 
     /// Does the patch see the same in the whole? A sheet whose points have no normal here may have one there.
@@ -147,6 +163,7 @@ private:
         append_large(all, found);
     }
 
+    const ScratchCloud& cloud_;
     const Estimating& how_;
     const Viewpoints& viewpoints_;
     const EmptySpace& space_;
@@ -308,7 +325,7 @@ SignsOfAll find_signs(ScratchCloud& cloud, const CloudSurvey& survey, const Esti
     const WholeSpace whole = space_of(cloud, spacing, passes.most_points);
     const std::vector<VoxelRange> ranges = passes.plan(cloud, passes.ghost_voxels);
     for (bool may_be_layers = false;; may_be_layers = true) {
-        EvidencePass pass(how, options.viewpoints, whole.space, spacing, may_be_layers, memory, store);
+        EvidencePass pass(cloud, how, options.viewpoints, whole.space, spacing, may_be_layers, memory, store);
         for_parts(cloud, survey.sums, ranges, store.widths,
                   [&](const CloudPart& part) { return pass.add(part); });
         if (auto signs =

@@ -3,6 +3,7 @@
 #include "hsdm/core/chunks.hh"
 #include "hsdm/core/large_vector.hh"
 #include "hsdm/normals/plane_smoothing.hh"
+#include "hsdm/pipeline/cell_attributes.hh"
 #include "hsdm/pipeline/nth_of_all.hh"
 #include "hsdm/pipeline/tile_plan.hh"
 
@@ -200,15 +201,16 @@ double move_points(ScratchCloud& cloud, const CloudSurvey& survey, double noise,
                    std::size_t most, std::optional<ScratchCloud>& as_read) {
     CloudSmoother smoother(cloud, survey, plan);
     smoother.find_moves(cloud, noise, most);
-    ScratchCloud next = cloud.emptied(cloud.has_normals());
-    as_read.emplace(cloud.emptied(true));
-    next.fill([&](const auto& put_row) {
+    ScratchCloud next = cloud.emptied(cloud.has_normals(), true);
+    as_read.emplace(cloud.emptied(true, false));
+    CellAttributes beside(cloud);
+    next.fill([&](const ScratchCloud::PutRow& put_row) {
         smoother.for_moved(cloud, [&](const Octree& part, Index i, const Vec3& to) {
             PointRow row = ScratchCloud::row_at(part, i), before = row;
             std::copy_n(to.data(), 3, row.begin());
             std::copy_n(to.data(), 3, before.begin() + 3);
-            put_row(row);
-            as_read->add(part.codes[i], before);
+            put_row(row, beside.of(part, i));
+            as_read->add(part.codes[i], before, nullptr);
         });
     });
     as_read->finish_sorted();
@@ -220,7 +222,7 @@ double move_points(ScratchCloud& cloud, const CloudSurvey& survey, double noise,
 void leave_out_moved(std::vector<PointRow>&& gone, std::size_t most, ScratchCloud& as_read) {
     const auto place = [](const PointRow& row) { return std::array{row[0], row[1], row[2]}; };
     std::ranges::sort(gone, {}, place);
-    ScratchCloud left = as_read.emptied(true);
+    ScratchCloud left = as_read.emptied(true, false);
     as_read.for_groups(most, [&](const Octree& part) {
         for (std::size_t i = 0; i < part.size(); ++i) {
             const Vec3& to = part.normals[i];

@@ -15,6 +15,7 @@ void put_piece(Piece&& piece, const PieceStore& store, Ranks::Bytes& bytes) {
     store.take_vertices(piece);
     put_vector(std::exchange(piece.positions, {}), bytes);
     put_vector(std::exchange(piece.codes, {}), bytes);
+    put_vector(std::exchange(piece.attributes, {}), bytes);
     store.take_facets(piece);
     put_vector(std::exchange(piece.first, {}), bytes);
     put_vector(std::exchange(piece.corners, {}), bytes);
@@ -29,6 +30,7 @@ Piece taken_piece(ByteReader& reader) {
     piece.counts = reader.take<FacetCounts>();
     piece.positions = reader.take_vector<Vec3>();
     piece.codes = reader.take_vector<MortonCode>();
+    piece.attributes = reader.take_vector<char>();
     piece.first = reader.take_vector<Index>();
     piece.corners = reader.take_vector<Index>();
     piece.sides = reader.take_vector<EdgeHint>();

@@ -13,8 +13,8 @@ class Joiner {
 public:
     Joiner(std::vector<Piece>& pieces, const PieceStore* store) : pieces_(pieces), store_(store) {}
 
-    PolygonMesh mesh(std::vector<EdgeHint>& sides) {
-        PolygonMesh mesh;
+    JoinedPieces joined() {
+        PolygonMesh& mesh = joined_.mesh;
         count();
         for (Piece& piece : pieces_) {
             if (store_) store_->take_foreign(piece);
@@ -22,12 +22,12 @@ public:
         }
         find_runs();
         reserve_large(mesh.positions, first_.back());
-        for (std::size_t k = 0; k < pieces_.size(); ++k) add_vertices(k, mesh);
+        for (std::size_t k = 0; k < pieces_.size(); ++k) add_vertices(k);
         reserve_large(mesh.corners, corners_);
         reserve_large(mesh.first, facets_ + 1);
-        if (has_sides_) reserve_large(sides, corners_);
-        for (std::size_t k = 0; k < pieces_.size(); ++k) add_facets(k, mesh, sides);
-        return mesh;
+        if (has_sides_) reserve_large(joined_.sides, corners_);
+        for (std::size_t k = 0; k < pieces_.size(); ++k) add_facets(k);
+        return std::move(joined_);
     }
 
 private:
@@ -66,13 +66,14 @@ private:
         std::ranges::stable_sort(runs_, {}, &Run::owner);
     }
 
-    void add_vertices(std::size_t k, PolygonMesh& mesh) {
+    void add_vertices(std::size_t k) {
         Piece& piece = pieces_[k];
         if (store_) store_->take_vertices(piece);
         for (; next_run_ < runs_.size() && runs_[next_run_].owner == k; ++next_run_)
             number_foreign(runs_[next_run_]);
-        append_large(mesh.positions, piece.positions);
-        release(piece.positions, piece.codes);
+        append_large(joined_.mesh.positions, piece.positions);
+        append_large(joined_.attributes, piece.attributes);
+        release(piece.positions, piece.codes, piece.attributes);
     }
 
     void number_foreign(const Run& run) {
@@ -90,11 +91,12 @@ private:
         return static_cast<Index>(v);
     }
 
-    void add_facets(std::size_t k, PolygonMesh& mesh, std::vector<EdgeHint>& sides) {
+    void add_facets(std::size_t k) {
         Piece& piece = pieces_[k];
+        PolygonMesh& mesh = joined_.mesh;
         if (store_) store_->take_facets(piece);
         const Index own = first_[k + 1] - first_[k], before = static_cast<Index>(mesh.corners.size());
-        append_large(sides, piece.sides);
+        append_large(joined_.sides, piece.sides);
         for_each_in_order(piece.corners.size(), [&](std::size_t c) {
             const Index v = piece.corners[c];
             mesh.corners.push_back(v < own ? first_[k] + v : foreign_[k][v - own]);
@@ -105,6 +107,7 @@ private:
 
     std::vector<Piece>& pieces_;
     const PieceStore* store_;
+    JoinedPieces joined_;
     std::vector<Index> first_{0}; // vertex of each piece
     std::size_t corners_ = 0, facets_ = 0;
     bool has_sides_ = false;
@@ -122,9 +125,8 @@ void check_mesh_size(std::size_t vertices, std::size_t corners) {
         + " corners of facets; fewer than 2^32 - 1 of each can be told apart, give a smaller --depth");
 }
 
-PolygonMesh joined_pieces(std::vector<Piece>&& pieces, std::vector<EdgeHint>& sides,
-                          const PieceStore* store) {
-    return Joiner(pieces, store).mesh(sides);
+JoinedPieces joined_pieces(std::vector<Piece>&& pieces, const PieceStore* store) {
+    return Joiner(pieces, store).joined();
 }
 
 } // namespace hsdm

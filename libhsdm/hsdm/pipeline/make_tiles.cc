@@ -3,6 +3,7 @@
 #include "hsdm/core/chunks.hh"
 #include "hsdm/core/hash.hh"
 #include "hsdm/core/large_vector.hh"
+#include "hsdm/pipeline/cell_attributes.hh"
 #include "hsdm/pipeline/compare_pieces.hh"
 #include "hsdm/pipeline/stray_search.hh"
 #include "hsdm/pipeline/tile_plan.hh"
@@ -123,13 +124,15 @@ private:
     Piece make_tile(const VoxelRange& range, int ghost) {
         Piece piece;
         piece.range = range;
-        const Octree octree = cloud_.octree_around(range, ghost);
+        Octree octree = cloud_.octree_around(range, ghost);
         how_.points_read += octree.size();
         if (octree.size() == 0) return piece;
         if (!known_.outliers) strays_.add(octree, range, ghost);
         if (strays_.has_found()) return piece; // all are made again without them
         const OctreeLevel level = extract_level(octree, cloud_.depth());
-        MethodInput in{cloud_.frame(), {}, octree, level, in_.options, in_.phases};
+        const std::vector<char> rows = take_attributes(cloud_, range, octree);
+        const PointView attributes = cloud_.attributes().view(rows);
+        MethodInput in{cloud_.frame(), attributes, octree, level, in_.options, in_.phases};
         in.has_layers = known_.has_layers;
         const PartOfLevel part{
             in_.survey.spacing,
@@ -141,7 +144,7 @@ private:
             known_.largest,
             [&](MortonCode code) { return range.holds(code); },
             [&](MortonCode code) { return range.is_near(morton_decode(code), ghost / 2); }};
-        return make_piece(in, part, range);
+        return make_piece(in, part, range, cloud_.attributes().of_vertices());
     }
 
     /// Once all tiles have looked for them: all is different without them.

@@ -52,6 +52,12 @@ bool wants_confidence(const ReconstructOptions& options) {
     return options.confidence || options.trim > 0;
 }
 
+void note_left_out(const std::vector<std::string>& names, Report& report) {
+    std::string all;
+    for (const std::string& name : names) all += (all.empty() ? "" : ", ") + name;
+    if (!all.empty()) report.options["left_out"] = all;
+}
+
 void note_options(bool estimate, const ReconstructOptions& options, Report& report) {
     const bool extended = method_for(options) == Method::extended;
     report.options["method"] = extended ? "extended" : "basic";

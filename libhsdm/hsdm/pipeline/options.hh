@@ -24,5 +24,7 @@ bool wants_adaptive(const ReconstructOptions& options);
 bool wants_confidence(const ReconstructOptions& options);
 
 void note_options(bool estimate, const ReconstructOptions& options, Report& report);
+/// What only some parts of the cloud have, by its names.
+void note_left_out(const std::vector<std::string>& names, Report& report);
 
 } // namespace hsdm

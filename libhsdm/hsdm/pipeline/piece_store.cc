@@ -19,6 +19,7 @@ void PieceStore::put(Piece& piece) {
     std::size_t firsts = 0, codes = 0;
     keep(piece.positions, place.vertices, place.positions_at);
     keep(piece.codes, codes, place.codes_at);
+    keep(piece.attributes, place.attributes, place.attributes_at);
     keep(piece.first, firsts, place.first_at);
     keep(piece.corners, place.corners, place.corners_at);
     keep(piece.sides, place.sides, place.sides_at);
@@ -31,6 +32,7 @@ void PieceStore::take_vertices(Piece& piece) const {
     const Place& place = place_of(piece);
     file_.read(place.positions_at, place.vertices, piece.positions);
     file_.read(place.codes_at, place.vertices, piece.codes);
+    file_.read(place.attributes_at, place.attributes, piece.attributes);
 }
 
 void PieceStore::take_foreign(Piece& piece) const {

@@ -24,7 +24,7 @@ public:
     std::size_t facets(const Piece& piece) const { return place_of(piece).facets; }
     bool has_sides(const Piece& piece) const { return place_of(piece).sides > 0; }
     /// Reads arrays of a piece into it again.
-    void take_vertices(Piece& piece) const; ///< positions and codes
+    void take_vertices(Piece& piece) const; ///< positions, codes and attributes
     void take_foreign(Piece& piece) const;
     void take_facets(Piece& piece) const; ///< first, corners, sides
 
@@ -38,9 +38,9 @@ public:
 
 private:
     struct Place {
-        std::size_t vertices = 0, facets = 0, corners = 0, sides = 0, foreign = 0;
+        std::size_t vertices = 0, facets = 0, corners = 0, sides = 0, foreign = 0, attributes = 0;
         std::size_t positions_at = 0, codes_at = 0, first_at = 0, corners_at = 0, sides_at = 0,
-                    foreign_at = 0;
+                    foreign_at = 0, attributes_at = 0;
     };
     const Place& place_of(const Piece& piece) const { return places_.at(piece.range.begin); }
 

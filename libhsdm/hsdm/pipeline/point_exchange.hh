@@ -10,14 +10,14 @@ namespace hsdm {
 /// whether they send points or not.
 class PointExchange {
 public:
-    using Receive = std::function<void(const PointRow&)>;
+    using Receive = std::function<void(const PointRow&, const char* beside)>;
 
-    /// `most_points`: so many wait here at most. receive(row) is called for each that comes, in no order that
-    /// means anything.
-    PointExchange(Ranks& ranks, std::size_t most_points, Receive receive);
+    /// `most_points`: so many wait here at most. `beside`: bytes that go with each. receive(row, beside) is
+    /// called for each that comes, in no order that means anything.
+    PointExchange(Ranks& ranks, std::size_t most_points, std::size_t beside, Receive receive);
 
     /// Waits for all ranks now and then.
-    void add(int to, const PointRow& row);
+    void add(int to, const PointRow& row, const char* beside);
     /// Returns once all ranks have sent and received all.
     void finish();
 
@@ -26,7 +26,7 @@ private:
     bool round(bool has_more);
 
     Ranks& ranks_;
-    std::size_t most_points_, waiting_ = 0;
+    std::size_t most_points_, beside_, waiting_ = 0;
     Receive receive_;
     std::vector<Ranks::Bytes> out_;
 };

@@ -186,11 +186,7 @@ Reconstruction reconstruct(PointCloud&& cloud, const ReconstructOptions& options
 void note_reading(const PointFile& file, Report& report) {
     report.input.dropped_nonfinite += file.nonfinite;
     if (!file.columns.empty()) report.options["columns"] = file.columns;
-    if (!file.partial.empty()) {
-        std::string names;
-        for (const std::string& name : file.partial) names += (names.empty() ? "" : ", ") + name;
-        report.options["left_out"] = names;
-    }
+    note_left_out(file.partial, report);
     if (file.withheld > 0)
         report.dropped.insert(report.dropped.begin(),
                               {"points that the file marks as withheld", file.withheld, file.first_withheld});

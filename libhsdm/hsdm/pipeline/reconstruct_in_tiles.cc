@@ -57,22 +57,31 @@ double voxels_per_point(const Survey& sums) {
     return static_cast<double>(sums.voxels()) / static_cast<double>(sums.points());
 }
 
-/// A tile may have what is left; in the end a voxel of the mesh takes so many bytes.
-std::size_t points_of_tile(const TileOptions& tiles, const Survey& sums, std::size_t bytes_per_voxel) {
+/// What a run has in memory of a voxel of the mesh in the end.
+struct VoxelBytes {
+    std::size_t mesh, attributes;
+    bool is_flat() const { return mesh == bytes_per_voxel_of_parked_mesh; }
+    std::size_t all() const { return mesh + attributes; }
+};
+
+/// A tile may have what is left; of attributes a point takes so many bytes.
+std::size_t points_of_tile(const TileOptions& tiles, const Survey& sums, const VoxelBytes& of_voxel,
+                           std::size_t bytes_of_attributes) {
     if (tiles.most_points > 0) return tiles.most_points;
     const std::size_t voxels = sums.voxels();
     const std::size_t mesh = voxels * bytes_per_voxel_of_pieces;
-    const std::size_t finished = voxels * bytes_per_voxel + bytes_of_program;
+    const std::size_t finished = voxels * of_voxel.all() + bytes_of_program;
     if (finished > tiles.memory)
-        throw Error("the mesh of " + std::to_string(voxels) + " voxels takes about "
-                    + std::to_string(finished / 1000000)
-                    + " MB, which is held in memory; give --memory that much, or a smaller --depth or larger "
-                      "--voxel-size"
-                    + (bytes_per_voxel > bytes_per_voxel_of_parked_mesh
-                           ? "; without --features, --intersections and --strict it takes less"
-                           : ""));
+        throw Error(
+            "the mesh of " + std::to_string(voxels) + " voxels takes about "
+            + std::to_string(finished / 1000000)
+            + " MB, which is held in memory; give --memory that much, or a smaller --depth or larger "
+              "--voxel-size"
+            + (of_voxel.is_flat() ? "" : "; without --features, --intersections and --strict it takes less"));
     const auto left = static_cast<double>(tiles.memory - std::min(tiles.memory, mesh + bytes_of_program));
-    return static_cast<std::size_t>(left / bytes_per_tile_point(voxels_per_point(sums)));
+    const double each =
+        bytes_per_tile_point(voxels_per_point(sums)) + static_cast<double>(bytes_of_attributes);
+    return static_cast<std::size_t>(left / each);
 }
 
 /// What is known of the cloud, once tiles have been made.
@@ -123,20 +132,24 @@ public:
         run(Pass::resolution, "resolution", 0.15, report_.seconds.octree, [&] { choose_resolution(group); });
         phases_.run("tiles", 0.2, report_.seconds.facets, [&] { make_facets(group); });
         note_options(estimates_, options_, report_); // this run's, whatever was kept
-        if (cloud_->extent().scanners.viewpoint) report_.options["sensors"] = "1";
+        note_left_out(cloud_->extent().attributes.left_out, report_);
+        if (const std::size_t known = cloud_->extent().scanners.sensors.size(); known > 0)
+            report_.options["sensors"] = std::to_string(known);
     }
 
     /// What finish(input, facets, report) makes of the facets; nothing on other ranks than the first.
     template <class Finish>
     auto finish(TileReport& how, const Finish& finish) {
         const std::size_t voxels = survey_->sums.voxels();
-        const bool parks =
-            bytes_per_voxel_ == bytes_per_voxel_of_parked_mesh
-            && ranks_.of_first(bytes_of_flat_finish(facets_.mesh) + bytes_of_program > tiles_.memory);
+        const bool parks = bytes_of_voxel().is_flat()
+                           && ranks_.of_first(bytes_of_flat_finish(facets_.mesh) + facets_.attributes.size()
+                                                  + bytes_of_program
+                                              > tiles_.memory);
         how_.parks = parks;
         const ScratchPlace parking{tiles_.scratch};
-        const std::size_t mesh =
-            voxels * (parks ? bytes_per_voxel_parked_in_error : bytes_per_voxel_in_error);
+        const std::size_t mesh = voxels
+                                 * (parks ? bytes_per_voxel_parked_in_error
+                                          : bytes_per_voxel_in_error + bytes_of_voxel().attributes);
         const double each = bytes_per_error_point(voxels_per_point(survey_->sums));
         const WholeInput in{*cloud_,
                             as_read_ ? &*as_read_ : nullptr,
@@ -225,7 +238,7 @@ private:
         const int depth = options_.depth.value_or(depth_for_cells(extent.finite()));
         const bool given = extent.has_normals && options_.normals != NormalSource::estimate;
         estimates_ = !given;
-        check_normals_of(extent);
+        check_normals_asked_for();
         cloud_.emplace(parts, extent, depth, tiles_, ranks_, given);
     }
 
@@ -235,23 +248,16 @@ private:
         duplicates_ = cloud_->extent().finite() - survey_->sums.points();
     }
 
-    void check_normals_of(const CloudExtent& extent) const {
+    void check_normals_asked_for() const {
         if (!estimates_) return;
         if (options_.normals == NormalSource::given)
             throw Error("normals given were asked for, but the cloud has none; use --normals auto or "
                         "estimate");
-        refuse_many(extent.scanners);
     }
 
-    /// Relative to the cube. To be called where normals are turned towards them.
+    /// Relative to the cube.
     CloudScanners scanners() const {
-        const CloudScanners& known = cloud_->extent().scanners;
-        refuse_many(known);
-        return known.placed(cloud_->frame(), cloud_->origin());
-    }
-    static void refuse_many(const CloudScanners& scanners) {
-        if (scanners.are_many)
-            refuse_in_tiles("several scanners are known, and normals have to face that of each point");
+        return cloud_->extent().scanners.placed(cloud_->frame(), cloud_->origin());
     }
 
     void estimate_normals(std::size_t group) {
@@ -371,7 +377,8 @@ private:
         std::vector<VoxelRange> ranges;
         std::optional<std::vector<Piece>> pieces;
         do {
-            ranges = plan(points_of_tile(tiles_, survey_->sums, bytes_per_voxel_));
+            ranges =
+                plan(points_of_tile(tiles_, survey_->sums, bytes_of_voxel(), cloud_->attributes().bytes()));
             count_tiles(ranges);
             pieces = make_tiles(in, ranges, turned, known_, how_);
         } while (!pieces);
@@ -381,6 +388,11 @@ private:
         facets_ = join_tiles(std::move(*pieces), &*store_);
     }
 
+    VoxelBytes bytes_of_voxel() const {
+        VoxelBytes bytes{bytes_per_voxel_, cloud_->attributes().bytes()};
+        if (!bytes.is_flat()) bytes.attributes = cloud_->attributes().columns().size() * bytes_per_property;
+        return bytes;
+    }
     std::vector<VoxelRange> plan(std::size_t most) const { return plan(*cloud_, most, tiles_.ghost_voxels); }
     static std::vector<VoxelRange> plan(const ScratchCloud& cloud, std::size_t most, int ghost) {
         return plan_tiles(cloud.cells(), {cloud.depth(), cloud.cell_depth(), ghost, most, cloud.borders()});

@@ -5,6 +5,7 @@
 #include "hsdm/errors.hh"
 #include "hsdm/features/facet_features.hh"
 #include "hsdm/io/write_mesh.hh"
+#include "hsdm/pipeline/attribute_rows.hh"
 #include "hsdm/point_view.hh"
 #include "hsdm/reconstruct.hh"
 
@@ -71,6 +72,8 @@ struct FlatReconstruction {
     PolygonMesh mesh; ///< one fan round each vertex
     FacetLinks links; ///< as find_facet_features() reads them
     FacetFeatures features;
+    AttributeRows rows;           ///< of the cloud's colours and scalars
+    std::vector<char> attributes; ///< per vertex
     int depth = 0;
     Report report;
 };

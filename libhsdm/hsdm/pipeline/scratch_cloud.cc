@@ -5,6 +5,7 @@
 #include "hsdm/core/large_vector.hh"
 #include "hsdm/errors.hh"
 #include "hsdm/io/kept_scratch.hh"
+#include "hsdm/pipeline/cell_attributes.hh"
 #include "hsdm/pipeline/near_cells.hh"
 #include "hsdm/pipeline/point_exchange.hh"
 #include "hsdm/pipeline/tile_plan.hh"
@@ -21,10 +22,10 @@ std::size_t bytes_buffered(const TileOptions& options) {
     return std::clamp(options.memory / 16, std::size_t{1} << 20, std::size_t{1} << 26);
 }
 
-/// Points that wait to be sent, at most; what comes takes as much again.
-std::size_t points_waiting(const TileOptions& options) {
+/// Points that wait to be sent, at most, each with so many bytes beside it; what comes takes as much again.
+std::size_t points_waiting(const TileOptions& options, std::size_t beside) {
     constexpr std::size_t most = std::size_t{1} << 20;
-    return std::min(most, bytes_buffered(options) / sizeof(PointRow));
+    return std::min(most, bytes_buffered(options) / (sizeof(PointRow) + beside));
 }
 
 OctreeOptions octree_options(bool use_normals, const Box& whole) {
@@ -46,15 +47,16 @@ ScratchCloud::ScratchCloud(const PointParts& parts, const CloudExtent& extent, i
                            const TileOptions& options, Ranks& ranks, bool use_normals)
     : extent_(extent),
       frame_(extent.box),
+      attributes_(extent.attributes),
       depth_(depth),
       cell_depth_(cell_depth_of(depth)),
-      most_waiting_(points_waiting(options)),
+      most_waiting_(points_waiting(options, attributes_.bytes())),
       kept_(options.kept),
       place_(new_place(kept_, options.scratch)),
       buffered_(bytes_buffered(options)),
       ranks_(ranks),
       scratch_(std::make_unique<ScratchPoints>(
-          place_, extent.finite() / static_cast<std::size_t>(ranks.size()), buffered_)),
+          place_, extent.finite() / static_cast<std::size_t>(ranks.size()), buffered_, attributes_.bytes())),
       has_normals_(use_normals && extent.has_normals) {
     options_ = octree_options(has_normals_, extent.box);
     none_.extent = extent.box.extent();
@@ -72,7 +74,7 @@ ScratchCloud::ScratchCloud(ByteReader& bytes, const TileOptions& options, Ranks&
       frame_(extent_.box),
       depth_(bytes.take<int>()),
       cell_depth_(cell_depth_of(depth_)),
-      most_waiting_(points_waiting(options)),
+      most_waiting_(points_waiting(options, AttributeRows(extent_.attributes).bytes())),
       kept_(options.kept),
       buffered_(bytes_buffered(options)),
       ranks_(ranks) {
@@ -83,9 +85,11 @@ ScratchCloud::ScratchCloud(ByteReader& bytes, const TileOptions& options, Ranks&
     begins_ = bytes.take_vector<MortonCode>(), fetched_ = bytes.take_vector<MortonCode>();
     cells_ = bytes.take_vector<ScratchPoints::Cell>();
     left_out_ = bytes.take_vector<PointRow>();
+    if (bytes.take<bool>()) attributes_ = AttributeRows(extent_.attributes);
+    count_cells();
     std::string name = bytes.take_text();
     place_ = {kept_->folder(), std::move(name), bytes.take<std::size_t>()};
-    scratch_ = std::make_unique<ScratchPoints>(place_, bytes, buffered_);
+    scratch_ = std::make_unique<ScratchPoints>(place_, bytes, buffered_, attributes_.bytes());
     note_kept();
 }
 
@@ -97,6 +101,7 @@ void ScratchCloud::put_state(Ranks::Bytes& bytes) const {
     put_vector(begins_, bytes), put_vector(fetched_, bytes);
     put_vector(cells_, bytes);
     put_vector(left_out_, bytes);
+    put(attributes_.bytes() > 0, bytes);
     put_text(place_.name, bytes);
     put(scratch_->bytes(), bytes);
     scratch_->put_index(bytes);
@@ -160,26 +165,43 @@ std::vector<MortonCode> ScratchCloud::borders() const {
 }
 
 /// To the rank that has its cell.
-void ScratchCloud::put_row(const PointRow& row, MortonCode cell, PointExchange& exchange) {
+void ScratchCloud::put_row(const PointRow& row, const char* beside, MortonCode cell,
+                           PointExchange& exchange) {
     if (const int to = owner(cell); to != ranks_.rank())
-        exchange.add(to, row);
+        exchange.add(to, row, beside);
     else
-        scratch_->add(cell, row);
+        scratch_->add(cell, row, beside);
+}
+
+/// Where all ranks' points that come go.
+PointExchange ScratchCloud::exchange_into(ScratchCloud& next) {
+    return {next.ranks_, next.most_waiting_, next.attributes_.bytes(),
+            [&next](const PointRow& row, const char* beside) {
+                next.scratch_->add(next.cell_of(next.relative_place(row)), row, beside);
+            }};
 }
 
 /// This rank's part of the points goes to those that have their cells.
 void ScratchCloud::sort_points(const PointParts& parts) {
-    const auto keep = [&](const PointRow& row) { scratch_->add(cell_of(relative_place(row)), row); };
-    PointExchange exchange(ranks_, most_waiting_, keep);
+    PointExchange exchange = exchange_into(*this);
     std::size_t added = 0;
+    std::vector<char> beside(attributes_.bytes());
     parts([&](const PointView& part) {
+        const std::vector<PointAttribute> attributes = attributes_.in(part);
+        const std::vector<std::int32_t> scanners = extent_.scanners.numbers_in(part);
         const std::vector<Index> cells =
             cells_of(part.size(), [&](Index i) { return vec3_at(part.positions, i) - origin(); });
         for_each_in_order(part.size(), [&](std::size_t i) {
             const Vec3 p = vec3_at(part.positions, i);
             const Vec3 n = has_normals_ ? vec3_at(part.normals, i) : Vec3(0, 0, 0);
             if (!is_finite(p)) return;
-            put_row({p[0], p[1], p[2], n[0], n[1], n[2]}, cells[i], exchange);
+            attributes_.write(attributes, static_cast<Index>(i), beside.data());
+            if (attributes_.has_scanners()) {
+                const std::int32_t own = scanner_of(part, i);
+                attributes_.set_scanner(beside.data(),
+                                        own < 0 ? -1 : scanners[static_cast<std::size_t>(own)]);
+            }
+            put_row({p[0], p[1], p[2], n[0], n[1], n[2]}, beside.data(), cells[i], exchange);
             ++added;
         });
     });
@@ -193,6 +215,22 @@ void ScratchCloud::gather_cells() {
     cells_.clear();
     for (const Ranks::Bytes& got : ranks_.gather(bytes_of(scratch_->cells())))
         for (const auto& cell : ByteReader(got).take_rest<ScratchPoints::Cell>()) cells_.push_back(cell);
+    count_cells();
+}
+
+void ScratchCloud::count_cells() {
+    first_of_cell_.clear();
+    Index number = 0;
+    for (const ScratchPoints::Cell& cell : cells_) {
+        first_of_cell_.push_back(number);
+        number += static_cast<Index>(cell.points);
+    }
+}
+
+ScratchCloud::NumberedCell ScratchCloud::cell_with(Index number) const {
+    const auto after = std::ranges::upper_bound(first_of_cell_, number);
+    const auto place = static_cast<std::size_t>(after - first_of_cell_.begin()) - 1;
+    return {cells_[place].code, first_of_cell_[place], cells_[place].points};
 }
 
 std::size_t ScratchCloud::points_before() const {
@@ -228,7 +266,23 @@ Octree ScratchCloud::first_octree(const std::vector<CellRows>& parts, std::size_
     PointView view;
     view.positions = StridedSpan(rows.front().data(), rows.size(), sizeof(PointRow));
     view.normals = StridedSpan(rows.front().data() + 3, rows.size(), sizeof(PointRow));
-    return build_octree(view, options_);
+    if (attributes_.bytes() > 0) // whatever they are: of clouds that have some octrees tell who is equal
+        view.colors =
+            StridedSpan(reinterpret_cast<const std::uint8_t*>(rows.data()), rows.size(), sizeof(PointRow));
+    Octree octree = build_octree(view, options_);
+    if (attributes_.bytes() > 0) number_points(parts, octree);
+    return octree;
+}
+
+/// From places in the parts to numbers.
+void ScratchCloud::number_points(const std::vector<CellRows>& parts, Octree& octree) const {
+    const auto to_number = [&](Index& place) {
+        const auto after = std::ranges::upper_bound(parts, place, {}, &CellRows::first);
+        const CellRows& part = *(after - 1);
+        place = static_cast<Index>(part.number + (place - part.first));
+    };
+    for_each_index(octree.size(), chunks::usual, [&](Index i) { to_number(octree.source[i]); });
+    for (Octree::Duplicate& equal : octree.duplicates) to_number(equal.first), to_number(equal.other);
 }
 
 /// The rows of octrees as one, but for what they are in the cloud: nothing is rounded or merged.
@@ -241,11 +295,11 @@ Octree ScratchCloud::arranged_octree(const std::vector<CellRows>& parts, std::si
         const CellRows& part = parts[k];
         std::vector<PointRow> whole;
         if (part.is_whole) scratch_->read(part.cell, whole);
-        auto i = static_cast<Index>(part.first);
+        auto i = static_cast<Index>(part.first), number = static_cast<Index>(part.number);
         for (const PointRow& row : part.is_whole ? whole : part.rows) {
             positions[i] = Vec3(row[0], row[1], row[2]);
             if (has_normals_) octree.normals[i] = Vec3(row[3], row[4], row[5]);
-            octree.source[i] = i;
+            octree.source[i] = number++;
             ++i;
         }
     });
@@ -256,8 +310,9 @@ Octree ScratchCloud::arranged_octree(const std::vector<CellRows>& parts, std::si
 Octree ScratchCloud::octree_of(std::vector<CellRows> parts) const {
     std::size_t points = 0;
     for (CellRows& part : parts) {
-        part.first = points;
-        points += part.is_whole ? points_of(part.cell) : part.rows.size();
+        const std::size_t cell = place_of(part.cell);
+        part.first = points, part.number = first_of_cell_[cell];
+        points += part.is_whole ? cells_[cell].points : part.rows.size();
     }
     if (points == 0) return none_;
     Octree octree = arranged_ ? arranged_octree(parts, points) : first_octree(parts, points);
@@ -292,14 +347,16 @@ void ScratchCloud::fetch(const std::vector<Surroundings>& wanted) {
     std::vector<Ranks::Bytes> out(static_cast<std::size_t>(ranks_.size()));
     for (const MortonCode cell : missing) put(cell, out[static_cast<std::size_t>(owner(cell))]);
     const std::vector<Ranks::Bytes> requests = ranks_.exchange(std::move(out));
-    PointExchange exchange(ranks_, most_waiting_,
-                           [&](const PointRow& row) { scratch_->add(cell_of(relative_place(row)), row); });
+    PointExchange exchange = exchange_into(*this);
     std::vector<PointRow> rows;
+    std::vector<char> beside;
     for (std::size_t to = 0; to < requests.size(); ++to)
         for (const auto cell : ByteReader(requests[to]).take_rest<MortonCode>()) {
             rows.clear();
             scratch_->read(cell, rows);
-            for (const PointRow& row : rows) exchange.add(static_cast<int>(to), row);
+            scratch_->read_beside(cell, beside);
+            for (std::size_t i = 0; i < rows.size(); ++i)
+                exchange.add(static_cast<int>(to), rows[i], beside.data() + i * attributes_.bytes());
         }
     exchange.finish();
     scratch_->finish();
@@ -369,9 +426,10 @@ void ScratchCloud::for_groups(std::size_t most, const std::function<void(const O
 
 void ScratchCloud::sort_in_cells(std::size_t most, const std::function<void(const Octree&)>& visit) {
     if (in_order_) return for_groups(most, visit);
-    ScratchCloud next = emptied(has_normals_);
+    ScratchCloud next = emptied(has_normals_, true);
+    CellAttributes beside(*this);
     for_groups(most, [&](const Octree& part) {
-        for_each_in_order(part.size(), [&](std::size_t i) { next.add(part, i); });
+        for_each_in_order(part.size(), [&](std::size_t i) { next.add(part, i, beside.of(part, i)); });
         visit(part);
     });
     next.finish_sorted();
@@ -410,9 +468,11 @@ Box ScratchCloud::box_of_points(std::size_t most) const {
     return {box.lo + origin(), box.hi + origin()};
 }
 
-ScratchCloud::ScratchCloud(const ScratchCloud& before, const Box& bounds, double extent, int depth)
+ScratchCloud::ScratchCloud(const ScratchCloud& before, const Box& bounds, double extent, int depth,
+                           bool carries)
     : extent_(before.extent_),
       frame_(before.frame_),
+      attributes_(carries ? before.attributes_ : AttributeRows()),
       options_(before.options_),
       none_(before.none_),
       depth_(depth),
@@ -422,7 +482,7 @@ ScratchCloud::ScratchCloud(const ScratchCloud& before, const Box& bounds, double
       place_(new_place(kept_, before.place_.folder)),
       buffered_(before.buffered_),
       ranks_(before.ranks_),
-      scratch_(std::make_unique<ScratchPoints>(place_, before.points_here(), buffered_)),
+      scratch_(std::make_unique<ScratchPoints>(place_, before.points_here(), buffered_, attributes_.bytes())),
       has_normals_(before.has_normals_),
       arranged_(true) {
     none_.bounds = bounds;
@@ -444,19 +504,18 @@ void ScratchCloud::divide(const ScratchCloud& before, const Vec3& shift, std::si
 }
 
 void ScratchCloud::rearrange(const Box& bounds, double extent, int depth, std::size_t most) {
-    ScratchCloud next(*this, bounds, extent, depth);
+    ScratchCloud next(*this, bounds, extent, depth, true);
     const Vec3 shift = origin() - next.origin();
     next.divide(*this, shift, most);
-    PointExchange exchange(ranks_, most_waiting_, [&](const PointRow& row) {
-        next.scratch_->add(next.cell_of(next.relative_place(row)), row);
-    });
+    PointExchange exchange = exchange_into(next);
+    CellAttributes beside(*this);
     for_groups(most, [&](const Octree& part) {
         const auto place = [&](std::size_t i) { return part.positions[i] + shift; };
         const std::vector<Index> cells = next.cells_of(part.size(), place);
         for_each_in_order(part.size(), [&](std::size_t i) {
             PointRow row = row_at(part, i);
             std::copy_n(place(i).data(), 3, row.begin());
-            next.put_row(row, cells[i], exchange);
+            next.put_row(row, beside.of(part, i), cells[i], exchange);
         });
     });
     exchange.finish();
@@ -472,7 +531,9 @@ void ScratchCloud::take(ScratchCloud&& next) {
     scratch_ = std::move(next.scratch_), place_ = std::move(next.place_);
     has_normals_ = next.has_normals_;
     arranged_ = next.arranged_, in_order_ = next.in_order_;
-    begins_ = std::move(next.begins_), cells_ = std::move(next.cells_);
+    attributes_ = std::move(next.attributes_);
+    begins_ = std::move(next.begins_);
+    cells_ = std::move(next.cells_), first_of_cell_ = std::move(next.first_of_cell_);
     fetched_ = std::vector<MortonCode>(), left_out_ = std::vector<PointRow>();
     ++version_;
 }
@@ -483,19 +544,19 @@ PointRow ScratchCloud::row_at(const Octree& octree, std::size_t point) {
     return {p[0], p[1], p[2], n[0], n[1], n[2]};
 }
 
-ScratchCloud ScratchCloud::emptied(bool has_normals) const {
-    ScratchCloud next(*this, bounds(), cube_extent(), depth_);
+ScratchCloud ScratchCloud::emptied(bool has_normals, bool carries) const {
+    ScratchCloud next(*this, bounds(), cube_extent(), depth_, carries);
     next.begins_ = begins_;
     next.has_normals_ = has_normals;
     return next;
 }
 
-void ScratchCloud::add(const Octree& octree, std::size_t point) {
-    add(octree.codes[point], row_at(octree, point));
+void ScratchCloud::add(const Octree& octree, std::size_t point, const char* beside) {
+    add(octree.codes[point], row_at(octree, point), beside);
 }
 
-void ScratchCloud::add(MortonCode code, const PointRow& row) {
-    scratch_->add(code >> 3 * (morton_levels - cell_depth_), row);
+void ScratchCloud::add(MortonCode code, const PointRow& row, const char* beside) {
+    scratch_->add(code >> 3 * (morton_levels - cell_depth_), row, beside);
 }
 
 void ScratchCloud::finish_sorted() {
@@ -504,12 +565,11 @@ void ScratchCloud::finish_sorted() {
     in_order_ = true;
 }
 
-void ScratchCloud::fill(
-    const std::function<void(const std::function<void(const PointRow&)>& put_row)>& work) {
-    const auto cell_of_row = [&](const PointRow& row) { return cell_of(relative_place(row)); };
-    PointExchange exchange(ranks_, most_waiting_,
-                           [&](const PointRow& row) { scratch_->add(cell_of_row(row), row); });
-    work([&](const PointRow& row) { put_row(row, cell_of_row(row), exchange); });
+void ScratchCloud::fill(const std::function<void(const PutRow& put_row)>& work) {
+    PointExchange exchange = exchange_into(*this);
+    work([&](const PointRow& row, const char* beside) {
+        put_row(row, beside, cell_of(relative_place(row)), exchange);
+    });
     exchange.finish();
     scratch_->finish();
     gather_cells();

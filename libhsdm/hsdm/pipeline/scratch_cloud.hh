@@ -43,6 +43,18 @@ public:
     Ranks& ranks() const { return ranks_; }
     const std::vector<ScratchPoints::Cell>& cells() const { return cells_; } ///< of all ranks
     int owner(MortonCode cell) const;                                        ///< its rank
+    /// What lies beside its points: none if it does not take those of the cloud along.
+    const AttributeRows& attributes() const { return attributes_; }
+    /// Replaces `rows` by those of a cell's points.
+    void read_attributes(MortonCode cell, std::vector<char>& rows) const {
+        scratch_->read_beside(cell, rows);
+    }
+    /// The cell with the point of a number: those on disk are numbered cell by cell, those left out too.
+    struct NumberedCell {
+        MortonCode code;
+        std::size_t first, points; ///< number of its first point, and how many it has
+    };
+    NumberedCell cell_with(Index number) const;
     int owner_of(const VoxelRange& range) const { return owner(cells_of(range).begin); }
     /// Where ranks begin that have cells, but for the first of them; ascending.
     std::vector<MortonCode> borders() const;
@@ -68,7 +80,8 @@ public:
     /// Fetches what other ranks have of these, so that octree_around() knows it. For all ranks at the same
     /// time.
     void fetch(const std::vector<Surroundings>& wanted);
-    /// The points of a range of this rank and of what was fetched around it.
+    /// The points of a range of this rank and of what was fetched around it; their `source` is their number,
+    /// but of cells that only some of are near.
     Octree octree_around(const VoxelRange& range, int ghost) const;
     /// Voxels along an edge of a cell.
     int cell_side() const { return 1 << (depth_ - cell_depth_); }
@@ -95,20 +108,23 @@ public:
     Box box_of_points(std::size_t most) const;
     static PointRow row_at(const Octree& octree, std::size_t point);
     /// The same cube and ranks without points: each rank gives those of its own cells, of a cell in the order
-    /// of octrees, by add() and finish_sorted(), or any by fill(). For all ranks at the same time.
-    ScratchCloud emptied(bool has_normals) const;
-    void add(const Octree& octree, std::size_t point);
-    void add(MortonCode code, const PointRow& row); ///< the same; `code`: of level 21
+    /// of octrees, by add() and finish_sorted(), or any by fill(). `carries`: with their attributes. For all
+    /// ranks at the same time.
+    ScratchCloud emptied(bool has_normals, bool carries) const;
+    /// `beside`: the point's attributes, if it carries them.
+    void add(const Octree& octree, std::size_t point, const char* beside = nullptr);
+    void add(MortonCode code, const PointRow& row, const char* beside); ///< the same; `code`: of level 21
     void finish_sorted();
-    /// work(put_row) calls put_row(row) for points relative to the cube, each of which goes to the rank that
-    /// has its cell.
-    void fill(const std::function<void(const std::function<void(const PointRow&)>& put_row)>& work);
+    /// work(put_row) calls put_row(row, beside) for points relative to the cube, each of which goes to the
+    /// rank that has its cell.
+    using PutRow = std::function<void(const PointRow& row, const char* beside)>;
+    void fill(const std::function<void(const PutRow& put_row)>& work);
     /// Has the points of that one from now on.
     void take(ScratchCloud&& next);
 
 private:
     /// Without points yet: those of another one, in another cube.
-    ScratchCloud(const ScratchCloud& before, const Box& bounds, double extent, int depth);
+    ScratchCloud(const ScratchCloud& before, const Box& bounds, double extent, int depth, bool carries);
     /// The cell of a position relative to the cube.
     MortonCode cell_of(const Vec3& relative) const;
     template <class Place>
@@ -119,27 +135,32 @@ private:
         MortonCode cell;
         bool is_whole;
         std::vector<PointRow> rows{};
-        std::size_t first = 0; // place of its first point, as far as cells come in order
+        std::size_t first = 0, number = 0; // of its first point: place, as far as cells come in order
     };
+    void number_points(const std::vector<CellRows>& parts, Octree& octree) const;
     Octree first_octree(const std::vector<CellRows>& parts, std::size_t points) const;
     Octree arranged_octree(const std::vector<CellRows>& parts, std::size_t points) const;
     Octree octree_of(std::vector<CellRows> parts) const;
-    std::size_t points_of(MortonCode cell) const {
-        return std::ranges::lower_bound(cells_, cell, {}, &ScratchPoints::Cell::code)->points;
+    std::size_t place_of(MortonCode cell) const {
+        return static_cast<std::size_t>(std::ranges::lower_bound(cells_, cell, {}, &ScratchPoints::Cell::code)
+                                        - cells_.begin());
     }
     std::vector<PointRow> rows_near(MortonCode cell, const VoxelRange& range, int ghost) const;
     /// By one of so many of this rank's points.
     void divide(std::span<const Vec3> sample, std::size_t stride);
     void divide(const ScratchCloud& before, const Vec3& shift, std::size_t most);
-    void put_row(const PointRow& row, MortonCode cell, PointExchange& exchange);
+    void put_row(const PointRow& row, const char* beside, MortonCode cell, PointExchange& exchange);
+    static PointExchange exchange_into(ScratchCloud& next);
     void sort_points(const PointParts& parts);
     void gather_cells();
+    void count_cells();
     int cells_within(int ghost) const;
     VoxelRange cells_of(const VoxelRange& range) const;
     std::vector<MortonCode> missing_cells(const std::vector<Surroundings>& wanted) const;
 
     CloudExtent extent_;
     CloudFrame frame_;
+    AttributeRows attributes_;
     OctreeOptions options_;
     Octree none_;
     int depth_, cell_depth_;
@@ -155,7 +176,8 @@ private:
     bool in_order_ = false;          // and those of a cell come in the order of octrees
     std::vector<MortonCode> begins_; // of the ranks' cells
     std::vector<ScratchPoints::Cell> cells_;
-    std::vector<MortonCode> fetched_; // cells of others, ascending
+    std::vector<Index> first_of_cell_; // numbers of their first points
+    std::vector<MortonCode> fetched_;  // cells of others, ascending
     std::vector<PointRow> left_out_;
     std::size_t version_ = 0;
 };

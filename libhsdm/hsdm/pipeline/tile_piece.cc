@@ -4,6 +4,7 @@
 #include "hsdm/core/hash.hh"
 #include "hsdm/core/large_vector.hh"
 #include "hsdm/errors.hh"
+#include "hsdm/pipeline/attributes.hh"
 
 #include <algorithm>
 #include <tuple>
@@ -34,6 +35,13 @@ public:
         add_facets(piece);
         add_digests(piece);
         return piece;
+    }
+
+    /// As extended_method() has them: of the points of each vertex's voxel, which is its own.
+    std::vector<char> attributes(const MethodInput& in, const AttributeRows& rows) const {
+        if (rows.bytes() == 0) return {};
+        const std::span<const Index> own = std::span(part_.voxel).subspan(own_[0], own_[1] - own_[0]);
+        return rows.rows_of(average_attributes(in.cloud, in.octree, level_, own), own.size());
     }
 
 private:
@@ -133,9 +141,12 @@ private:
 
 } // namespace
 
-Piece make_piece(const MethodInput& in, const PartOfLevel& part, const VoxelRange& range) {
+Piece make_piece(const MethodInput& in, const PartOfLevel& part, const VoxelRange& range,
+                 const AttributeRows& attributes) {
     PartFacets facets = facets_of_part(in, part);
-    Piece piece = TileMesh(in, facets, range).piece();
+    const TileMesh tile(in, facets, range);
+    Piece piece = tile.piece();
+    piece.attributes = tile.attributes(in, attributes);
     piece.counts = facets.counts;
     piece.counts.facets = piece.first.size() - 1;
     piece.components = std::move(facets.components);

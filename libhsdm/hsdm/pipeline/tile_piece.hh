@@ -2,6 +2,7 @@
 // The facets of one tile: a range of a level's voxels, of which all within some voxels is known.
 
 #include "hsdm/mesh/feature_hints.hh"
+#include "hsdm/pipeline/attribute_rows.hh"
 #include "hsdm/pipeline/extended_method.hh"
 #include "hsdm/pipeline/voxel_range.hh"
 
@@ -15,6 +16,7 @@ struct Piece {
     VoxelRange range;
     std::vector<Vec3> positions;   ///< of its vertices, relative to the cube
     std::vector<MortonCode> codes; ///< of their voxels, ascending
+    std::vector<char> attributes;  ///< their AttributeRows
     std::vector<Index> first{0};   ///< of its facets, as in PolygonMesh
     std::vector<Index> corners;    ///< its vertices, and after these the foreign ones
     std::vector<EdgeHint> sides;   ///< per side of a facet, or none
@@ -43,7 +45,9 @@ struct Piece {
 /// How far beyond a tile its neighbours' results are compared with its own, in voxels.
 inline constexpr int compared_voxels = 2;
 
-/// Reconstructs a tile. `in`: the points of the range and of all voxels within the ghost layer of it.
-Piece make_piece(const MethodInput& in, const PartOfLevel& part, const VoxelRange& range);
+/// Reconstructs a tile. `in`: the points of the range and of all voxels within the ghost layer of it, and the
+/// attributes of its own, which are of these columns.
+Piece make_piece(const MethodInput& in, const PartOfLevel& part, const VoxelRange& range,
+                 const AttributeRows& attributes);
 
 } // namespace hsdm

@@ -17,6 +17,9 @@ inline constexpr std::size_t bytes_per_point = 260, bytes_per_voxel_of_pieces = 
                              bytes_per_voxel_in_error = 130, bytes_per_voxel_parked_in_error = 65,
                              bytes_of_program = std::size_t{64} << 20;
 
+/// In the end, of a number of a vertex of a half-edge mesh, as it is made of flat arrays.
+inline constexpr std::size_t bytes_per_property = 2 * sizeof(double);
+
 /// The same of a tile's point, and of one whose distance is measured, with what is made of its voxel.
 inline double bytes_per_tile_point(double voxels_per_point) {
     return 110 + 750 * voxels_per_point;

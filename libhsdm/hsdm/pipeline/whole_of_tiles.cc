@@ -94,6 +94,7 @@ public:
           intersections_(facets.known.intersections),
           report_(std::move(report)) {
         result_.mesh = std::move(facets.mesh);
+        result_.rows = in.cloud.attributes().of_vertices(), result_.attributes = std::move(facets.attributes);
     }
 
     FlatReconstruction finish() {
@@ -154,9 +155,19 @@ private:
     void keep_to_manifold() {
         if (links().split_vertices > 0 || links().source.size() < mesh().vertex_count()) {
             mesh().positions = gathered(mesh().positions, links().source);
+            keep_attributes();
             mesh().corners = std::move(links().vertex);
         }
         forget_vertices();
+    }
+    void keep_attributes() {
+        const std::size_t bytes = result_.rows.bytes();
+        std::vector<char> kept = large_vector<char>(links().source.size() * bytes);
+        for_each_index(bytes > 0 ? links().source.size() : 0, chunks::light, [&](Index v) {
+            std::copy_n(result_.attributes.data() + links().source[v] * bytes, bytes,
+                        kept.data() + v * bytes);
+        });
+        result_.attributes = std::move(kept);
     }
     void relink() {
         links() = FacetLinks(); // its memory first
@@ -164,7 +175,7 @@ private:
     }
     void park_links(ParkedArrays& waiting) {
         waiting.park(links().facet, links().twin, links().vertex, links().source, links().side_out,
-                     links().open_in, links().accepted, hints_.sides);
+                     links().open_in, links().accepted, hints_.sides, result_.attributes);
     }
     void forget_vertices() { release(links().vertex, links().source, links().accepted); }
 
@@ -195,7 +206,8 @@ private:
         FacetNormals normals = facet_normals(mesh());
         ParkedArrays waiting(in_.parking);
         if (in_.options.normal_smoothing > 0) {
-            waiting.park(mesh().positions, mesh().corners, links().side_out, links().open_in);
+            waiting.park(mesh().positions, mesh().corners, links().side_out, links().open_in,
+                         result_.attributes);
             const FacetNeighbours neighbours = neighbours_of(mesh(), links(), result_.features.sharp);
             waiting.park(links().facet, links().twin);
             smooth_facet_normals(normals, neighbours, {.rounds = in_.options.normal_smoothing});
@@ -226,7 +238,9 @@ WholeFacets join_tiles(std::vector<Piece>&& pieces, const PieceStore* store) {
     WholeFacets whole;
     for (const Piece& piece : pieces) whole.counts += piece.counts;
     whole.known.intersections = whole.counts.tangles.left;
-    whole.mesh = joined_pieces(std::move(pieces), whole.known.hints.sides, store);
+    JoinedPieces joined = joined_pieces(std::move(pieces), store);
+    whole.mesh = std::move(joined.mesh), whole.attributes = std::move(joined.attributes);
+    whole.known.hints.sides = std::move(joined.sides);
     judge(whole.counts, whole.known);
     return whole;
 }
@@ -240,6 +254,8 @@ Reconstruction finish_whole(const WholeInput& in, WholeFacets&& facets, Report&&
         facets.known.links = link_facets(facets.mesh);
         check_whole(in, method, facets.mesh, *facets.known.links);
         const auto count = facets.mesh.vertex_count();
+        facets.mesh.properties = in.cloud.attributes().of_vertices().properties_of(facets.attributes);
+        release(facets.attributes);
         facets.mesh.properties.push_back({level_property, VertexProperty::Type::uint8,
                                           std::vector<double>(count, static_cast<double>(level.depth))});
     });

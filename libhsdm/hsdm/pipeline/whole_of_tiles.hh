@@ -10,6 +10,7 @@ namespace hsdm {
 /// The facets of the whole, relative to the cube, and what pieces tell of them.
 struct WholeFacets {
     PolygonMesh mesh;
+    std::vector<char> attributes; ///< AttributeRows of the cloud, of its vertices
     FacetKnowledge known;
     FacetCounts counts;
 };

@@ -5,12 +5,15 @@
 namespace hsdm {
 namespace {
 
-/// Level, class, normals and their count, in the order in which a Reconstruction's mesh has them.
+/// Colours and scalars, level, class, normals and their count, in the order in which a Reconstruction's mesh
+/// has them.
 VertexRows rows_of(const FlatReconstruction& flat) {
     using Type = VertexProperty::Type;
     const bool classes = !flat.features.sharp.empty(), normals = !flat.features.normals.empty();
     VertexRows rows;
     rows.normals = true;
+    for (const AttributeRows::Column& column : flat.rows.columns())
+        rows.columns.emplace_back(column.name, column.type);
     rows.columns.emplace_back(level_property, Type::uint8);
     if (classes) rows.columns.emplace_back(vertex_class_property, Type::uint8);
     for (std::size_t i = 0; normals && i < 9; ++i)
@@ -21,6 +24,8 @@ VertexRows rows_of(const FlatReconstruction& flat) {
         FacetFan fan(flat.mesh, flat.links, flat.features);
         for (std::size_t v = begin; v < end; ++v) {
             Vec3& mean = means.emplace_back(0, 0, 0);
+            for (std::size_t k = 0; k < flat.rows.columns().size(); ++k)
+                values.push_back(flat.rows.value(flat.attributes.data() + v * flat.rows.bytes(), k));
             values.push_back(flat.depth);
             if (!classes) continue;
             fan.gather(static_cast<Index>(v));

@@ -1,0 +1,61 @@
+#include "hsdm/pipeline/cell_attributes.hh"
+
+#include "hsdm/core/large_vector.hh"
+#include "hsdm/pipeline/attributes.hh"
+
+#include <algorithm>
+
+namespace hsdm {
+
+const char* CellAttributes::row(Index number) {
+    if (number < begin_ || number >= end_) {
+        const ScratchCloud::NumberedCell cell = cloud_.cell_with(number);
+        cloud_.read_attributes(cell.code, rows_);
+        begin_ = cell.first, end_ = cell.first + cell.points;
+    }
+    return rows_.data() + (number - begin_) * cloud_.attributes().bytes();
+}
+
+const char* CellAttributes::of(const Octree& octree, std::size_t point) {
+    const AttributeRows& attributes = cloud_.attributes();
+    if (attributes.bytes() == 0) return nullptr;
+    const Index number = octree.source[point];
+    const std::span<const Octree::Duplicate> others = duplicates_of(octree, number);
+    if (others.empty()) return row(number);
+    std::vector<const char*> rows{row(number)}; // equal points are of one cell
+    for (const Octree::Duplicate& other : others) rows.push_back(row(other.other));
+    mean_.resize(attributes.bytes());
+    attributes.write_mean(rows, mean_.data());
+    return mean_.data();
+}
+
+std::vector<std::int32_t> scanners_of(const ScratchCloud& cloud, const Octree& octree) {
+    std::vector<std::int32_t> numbers;
+    if (!cloud.attributes().has_scanners()) return numbers;
+    CellAttributes on_disk(cloud);
+    resize_large(numbers, octree.size());
+    for (std::size_t i = 0; i < numbers.size(); ++i)
+        numbers[i] = cloud.attributes().scanner(on_disk.of(octree, i));
+    return numbers;
+}
+
+std::vector<char> take_attributes(const ScratchCloud& cloud, const VoxelRange& range, Octree& octree) {
+    const std::size_t bytes = cloud.attributes().bytes();
+    if (cloud.attributes().columns().empty()) return {};
+    const int shift = 3 * (morton_levels - range.depth);
+    const auto first_of = [&](MortonCode code) {
+        return static_cast<std::size_t>(std::ranges::lower_bound(octree.codes, code << shift)
+                                        - octree.codes.begin());
+    };
+    const std::size_t begin = first_of(range.begin), end = first_of(range.end);
+    std::vector<char> rows = large_vector<char>((end - begin) * bytes);
+    CellAttributes on_disk(cloud);
+    for (std::size_t i = begin; i < end; ++i)
+        std::copy_n(on_disk.of(octree, i), bytes,
+                    rows.begin() + static_cast<std::ptrdiff_t>((i - begin) * bytes));
+    for (std::size_t i = 0; i < octree.size(); ++i)
+        octree.source[i] = i >= begin && i < end ? static_cast<Index>(i - begin) : 0;
+    return rows;
+}
+
+} // namespace hsdm
