@@ -83,12 +83,8 @@ std::span<const FitLanes> fit_lanes() {
 }
 
 PlaneFit EightPlanes::of(std::size_t lane) const {
-    constexpr double negligible = 1e-12;
-    PlaneFit fit;
-    if (!(trace[lane] > 0)) return fit;
-    fit.variance = variance[lane];
-    if (gap[lane] > negligible) fit.normal = Vec3(along[0][lane], along[1][lane], along[2][lane]).normalized();
-    return fit;
+    return plane_along(Vec3(along[0][lane], along[1][lane], along[2][lane]), variance[lane], trace[lane],
+                       gap[lane]);
 }
 
 } // namespace hsdm

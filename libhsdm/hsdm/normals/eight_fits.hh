@@ -13,7 +13,7 @@ struct EightOffsets {
     static constexpr std::size_t lanes = 8, most = 64; ///< as many as Neighbors holds per point
     using Row = std::array<double, lanes>;             ///< a value of each point
 
-    std::size_t count = 0;                                ///< per point
+    std::size_t count = 0;                                 ///< per point
     alignas(64) std::array<std::array<Row, 3>, most> rows; ///< per neighbour: x, y, z
 
     void set(std::size_t neighbor, std::size_t lane, const Vec3& offset) {
@@ -24,12 +24,13 @@ struct EightOffsets {
 /// The planes with the least squared distances from each point and its neighbours.
 struct EightPlanes {
     alignas(64) std::array<EightOffsets::Row, 3> along; ///< the normals, of any length
-    EightOffsets::Row variance, trace, gap;             ///< see plane_fit.hh for what the last two decide
+    EightOffsets::Row variance, trace, gap;             ///< as plane_along() takes them
 
     PlaneFit of(std::size_t lane) const;
 };
 
-/// Per point, what gives the coordinates x, y and z of an offset, z upwards, as its products with three vectors.
+/// Per point, what gives the coordinates x, y and z of an offset, z upwards, as its products with three
+/// vectors.
 struct EightFrames {
     alignas(64) std::array<std::array<EightOffsets::Row, 3>, 3> rows;
 
@@ -42,14 +43,15 @@ struct EightFrames {
 /// How much a bent sheet tilts the plane that is fitted to it, by the heights z over (x, y) as a quadratic
 /// function.
 struct EightTilts {
-    /// Slope of the best quadratic at the point less the slope of the best plane: how far the plane is off, and
-    /// the error of that. 0 where the points do not determine six coefficients.
+    /// Slope of the best quadratic at the point less the slope of the best plane: how far the plane is off,
+    /// and the error of that. 0 where the points do not determine six coefficients.
     alignas(64) std::array<EightOffsets::Row, 2> tilt{};
-    EightOffsets::Row variance{}; ///< expected |tilt|^2 if there were only noise, by the quadratic's residuals
+    EightOffsets::Row
+        variance{}; ///< expected |tilt|^2 if there were only noise, by the quadratic's residuals
 };
 
-/// The same functions for lanes of one width. All widths say the same to the last bit: each lane does what the
-/// others do, in one order, and no product is added without being rounded.
+/// The same functions for lanes of one width. All widths say the same to the last bit: each lane does what
+/// the others do, in one order, and no product is added without being rounded.
 struct FitLanes {
     void (*planes)(const EightOffsets& offsets, EightPlanes& planes);
     void (*tilts)(const EightOffsets& offsets, const EightFrames& frames, EightTilts& tilts);

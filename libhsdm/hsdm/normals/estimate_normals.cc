@@ -150,11 +150,10 @@ public:
         result_.noise = options.noise ? *options.noise : estimate_noise(octree_, neighbors_);
         choose_tolerance(options);
         find_bent();
-        for (int round = 0; round < options.rounds; ++round) renew([this](Index i) { return best_plane(i); });
-        for (int round = 0; round < options.rounds; ++round)
-            renew([this](Index i) {
-                return renewal_.differs(i, angles::smooth) ? renewal_.averaged(i) : result_.normals[i];
-            });
+        renew(options.rounds, [this](Index i) { return best_plane(i); });
+        renew(options.rounds, [this](Index i) {
+            return renewal_.differs(i, angles::smooth) ? renewal_.averaged(i) : result_.normals[i];
+        });
     }
 
 private:
@@ -197,13 +196,27 @@ private:
         });
     }
 
-    /// New normals for the bent points, all from the old ones.
+    /// New normals for the bent points, in each round all from the old ones. Where neither the point's nor a
+    /// neighbour's has changed in the round before, nothing does in this one.
     template <class NormalOf>
-    void renew(const NormalOf& normal_of) {
+    void renew(int rounds, const NormalOf& normal_of) {
         const std::vector<Index>& bent = result_.bent;
         std::vector<Vec3> renewed = unwritten_vector<Vec3>(bent.size());
-        for_each_index(bent.size(), chunks::heavy, [&](Index b) { renewed[b] = normal_of(bent[b]); });
-        for_each_index(bent.size(), chunks::light, [&](Index b) { result_.normals[bent[b]] = renewed[b]; });
+        std::vector<std::uint8_t> changed = large_vector<std::uint8_t>(octree_.size(), 0);
+        const auto is_due = [&](Index i) {
+            return changed[i] != 0
+                   || std::ranges::any_of(neighbors_.of(i), [&](Index j) { return changed[j] != 0; });
+        };
+        for (int round = 0; round < rounds; ++round) {
+            for_each_index(bent.size(), chunks::heavy, [&](Index b) {
+                renewed[b] = round == 0 || is_due(bent[b]) ? normal_of(bent[b]) : result_.normals[bent[b]];
+            });
+            for_each_index(bent.size(), chunks::light, [&](Index b) {
+                Vec3& normal = result_.normals[bent[b]];
+                changed[bent[b]] = normal != renewed[b];
+                normal = renewed[b];
+            });
+        }
     }
 
     /// How many neighbours lie on the plane with that normal through the point, or on the parallel one
