@@ -11,21 +11,21 @@ using namespace hsdm;
 
 namespace {
 
-constexpr std::size_t lanes = EightOffsets::lanes;
+constexpr std::size_t eight = EightOffsets::lanes;
 
 /// What offset(neighbour, lane) says.
 EightOffsets offsets_of(std::size_t count, const std::function<Vec3(std::size_t, std::size_t)>& offset) {
     EightOffsets offsets;
     offsets.count = count;
     for (std::size_t k = 0; k < count; ++k)
-        for (std::size_t lane = 0; lane < lanes; ++lane) offsets.set(k, lane, offset(k, lane));
+        for (std::size_t lane = 0; lane < eight; ++lane) offsets.set(k, lane, offset(k, lane));
     return offsets;
 }
 
 /// The coordinates as they are.
 EightFrames straight_frames() {
     EightFrames frames;
-    for (std::size_t lane = 0; lane < lanes; ++lane)
+    for (std::size_t lane = 0; lane < eight; ++lane)
         frames.set(lane, {Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1)});
     return frames;
 }
@@ -57,11 +57,12 @@ TEST_CASE("planes fitted eight at a time are those fitted one by one", "[normals
     for (std::size_t trial = 0; trial < 50; ++trial) {
         const EightOffsets offsets = random_offsets(random, 5 + trial % 60);
         const EightPlanes planes = planes_of(offsets);
-        for (std::size_t lane = 0; lane < lanes; ++lane) {
+        for (std::size_t lane = 0; lane < eight; ++lane) {
             PlaneSums sums;
             sums.add(Vec3(0, 0, 0), 1);
             for (std::size_t k = 0; k < offsets.count; ++k)
-                sums.add(Vec3(offsets.rows[k][0][lane], offsets.rows[k][1][lane], offsets.rows[k][2][lane]), 1);
+                sums.add(Vec3(offsets.rows[k][0][lane], offsets.rows[k][1][lane], offsets.rows[k][2][lane]),
+                         1);
             const PlaneFit alone = fit_plane(sums), fit = planes.of(lane);
             CHECK((fit.normal - alone.normal).norm() < 1e-9);
             CHECK(fit.variance == Approx(alone.variance).margin(1e-14));
@@ -74,7 +75,7 @@ TEST_CASE("points at one place span no plane, whatever those of other lanes do",
     const EightPlanes planes = planes_of(offsets_of(10, [&](std::size_t, std::size_t lane) {
         return lane % 3 == 0 ? Vec3(0, 0, 0) : random.direction();
     }));
-    for (std::size_t lane = 0; lane < lanes; ++lane)
+    for (std::size_t lane = 0; lane < eight; ++lane)
         CHECK(planes.of(lane).normal.norm() == Approx(lane % 3 == 0 ? 0 : 1));
 }
 
@@ -83,7 +84,7 @@ TEST_CASE("the tilt is the slope of the quadratic less that of the plane", "[nor
     // About (1/3, 0): the plane's slope is that of its middle. The first of them is the point itself.
     const double xs[] = {0, -1, 2}, ys[] = {0, -1, 1};
     for (int trial = 0; trial < 100; ++trial) {
-        std::array<std::array<double, 6>, lanes> c;
+        std::array<std::array<double, 6>, eight> c;
         for (auto& of_lane : c)
             for (double& x : of_lane) x = random.uniform(-1, 1);
         const EightTilts tilts = tilts_of(offsets_of(8, [&](std::size_t k, std::size_t lane) {
@@ -92,7 +93,7 @@ TEST_CASE("the tilt is the slope of the quadratic less that of the plane", "[nor
             const double z = a[1] * x + a[2] * y + a[3] * x * x + a[4] * x * y + a[5] * y * y;
             return lane % 2 == 0 ? Vec3(x, y, z) : Vec3(y, x, z); // the axes swapped
         }));
-        for (std::size_t lane = 0; lane < lanes; ++lane) {
+        for (std::size_t lane = 0; lane < eight; ++lane) {
             // Least squares of x^2 over -1, 0, 2 has the slope 8/7; x y and y^2 are even about y = 0.
             CHECK(tilts.tilt[lane % 2][lane] == Approx(-8.0 / 7 * c[lane][3]).margin(1e-9));
             CHECK(tilts.tilt[1 - lane % 2][lane] == Approx(-1.0 / 3 * c[lane][4]).margin(1e-9));
@@ -109,14 +110,14 @@ TEST_CASE("the tilt of a noisy plane has the variance that is said", "[normals]"
             return Vec3(random.uniform(0, 1), random.uniform(-1, 1), 0); // all on one side, as at a border
         });
         // Noise of the point, too: heights are relative to it.
-        std::array<double, lanes> own;
+        std::array<double, eight> own;
         for (double& height : own) height = 0.3 * random.gauss();
         EightOffsets noisy = offsets;
         for (std::size_t k = 0; k < offsets.count; ++k)
-            for (std::size_t lane = 0; lane < lanes; ++lane)
+            for (std::size_t lane = 0; lane < eight; ++lane)
                 noisy.rows[k][2][lane] = 0.3 * random.gauss() - own[lane];
         const EightTilts tilts = tilts_of(noisy);
-        for (std::size_t lane = 0; lane < lanes; ++lane) {
+        for (std::size_t lane = 0; lane < eight; ++lane) {
             squares += tilts.tilt[0][lane] * tilts.tilt[0][lane] + tilts.tilt[1][lane] * tilts.tilt[1][lane];
             said += tilts.variance[lane];
         }
@@ -129,12 +130,10 @@ TEST_CASE("points on a line, on a conic or too few give no tilt, whatever other 
     const auto beside = [&](std::size_t lane, const Vec3& at) {
         return lane == 5 ? at : Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
     };
-    const EightOffsets line = offsets_of(10, [&](double i, std::size_t lane) {
-        return beside(lane, Vec3(0.1 * i, 0.2 * i, 0.01 * i * i));
-    });
-    const EightOffsets few = offsets_of(5, [&](double i, std::size_t lane) {
-        return beside(lane, Vec3(0.3 * i, 0.1 * i * i, 0.1 * i));
-    });
+    const EightOffsets line = offsets_of(
+        10, [&](double i, std::size_t lane) { return beside(lane, Vec3(0.1 * i, 0.2 * i, 0.01 * i * i)); });
+    const EightOffsets few = offsets_of(
+        5, [&](double i, std::size_t lane) { return beside(lane, Vec3(0.3 * i, 0.1 * i * i, 0.1 * i)); });
     const EightOffsets circle = offsets_of(12, [&](double i, std::size_t lane) { // through the point
         return beside(lane, Vec3(std::cos(i) - 1, std::sin(i), 0.1 * i));
     });
@@ -152,7 +151,7 @@ TEST_CASE("lanes of every width fit the same, to the last bit", "[normals]") {
     for (std::size_t round = 0; round < 500; ++round) {
         const EightOffsets offsets = random_offsets(random, 3 + round % 62);
         EightFrames frames;
-        for (std::size_t lane = 0; lane < lanes; ++lane)
+        for (std::size_t lane = 0; lane < eight; ++lane)
             frames.set(lane, {random.direction(), random.direction(), random.direction()});
         const EightPlanes planes = planes_of(offsets);
         const EightTilts tilts = tilts_of(offsets, frames);
