@@ -51,22 +51,3 @@ TEST_CASE("points of a line or of one place span no plane", "[normals]") {
         CHECK(fit_plane(sums).normal == Vec3(0, 0, 0));
     }
 }
-
-TEST_CASE("planes fitted two at a time are those fitted one by one", "[normals]") {
-    support::Random random(3);
-    for (std::size_t trial = 0; trial < 100; ++trial) {
-        std::array<PlaneSums, 2> sums;
-        const double flatness = std::pow(0.1, trial % 20);
-        for (int i = 0; i < 10; ++i) {
-            sums[trial % 2].add(Vec3(random.gauss(), random.gauss(), random.gauss()), 1);
-            sums[1 - trial % 2].add(Vec3(random.gauss(), random.gauss(), flatness * random.gauss()), 1);
-        }
-        const std::array<PlaneFit, 2> fits = fit_planes(sums);
-        for (std::size_t lane : {0u, 1u}) {
-            const PlaneFit alone = fit_plane(sums[lane]);
-            CHECK(fits[lane].normal == alone.normal);
-            CHECK(fits[lane].variance == alone.variance);
-            CHECK(fits[lane].centroid == alone.centroid);
-        }
-    }
-}

@@ -103,13 +103,12 @@ std::vector<SignedEdge> contracted(const std::vector<SignedEdge>& edges, SignedF
     return result;
 }
 
-/// Joins nodes in rounds until no edge that may_join() is left between two trees.
+/// Joins nodes in rounds until no edge that may_join() is left between two trees. `edges`: merged.
 template <class MayJoin>
 std::vector<Round> join_all(SignedForest& forest, std::vector<SignedEdge> edges, std::size_t nodes,
                             const MayJoin& may_join) {
     std::vector<Round> rounds;
     while (!edges.empty()) {
-        merge_edges(edges, nodes);
         std::vector<Joint> joints;
         const std::vector<Index> picked = picked_edges(edges, nodes, may_join);
         for_each_in_order(picked.size(), [&](std::size_t i) {
@@ -122,6 +121,7 @@ std::vector<Round> join_all(SignedForest& forest, std::vector<SignedEdge> edges,
             break;
         }
         std::vector<SignedEdge> rest = contracted(edges, forest);
+        merge_edges(rest, nodes);
         rounds.push_back({std::move(edges), std::move(joints)});
         edges = std::move(rest);
     }
@@ -201,9 +201,10 @@ private:
 };
 
 /// Undoes the rounds, last one first: joined nodes take the signs of their roots, then those that the sum of
-/// their evidence contradicts are turned.
-void undo(std::vector<Round> rounds, std::vector<std::int8_t>& sign) {
+/// their evidence contradicts are turned. Returns the edges that the first round began with.
+std::vector<SignedEdge> undo(std::vector<Round> rounds, std::vector<std::int8_t>& sign) {
     Improvement improvement(sign);
+    std::vector<SignedEdge> first;
     for (; !rounds.empty(); rounds.pop_back()) {
         const std::vector<Joint>& joints = rounds.back().joints;
         for_each_in_order(joints.size(), [&](std::size_t i) {
@@ -211,7 +212,9 @@ void undo(std::vector<Round> rounds, std::vector<std::int8_t>& sign) {
             sign[joint.joined] = static_cast<std::int8_t>(sign[joint.root] * joint.sign);
         });
         improvement.run(rounds.back().edges);
+        first.swap(rounds.back().edges);
     }
+    return first;
 }
 
 /// Multiplies the evidence by the signs of its ends: positive where they agree with it.
@@ -223,13 +226,13 @@ void turn_evidence(std::vector<SignedEdge>& edges, const std::vector<std::int8_t
 
 /// Turns whole regions that the sum of their evidence contradicts, though it bears out each of their nodes:
 /// nodes are joined anew, by agreeing evidence alone, so that a region whose border contradicts it grows up
-/// to that border. `edges`: the evidence times the signs; so it is after, too. Returns whether any turned.
+/// to that border. `edges`: the evidence times the signs, merged; so it is after, too. Returns whether any
+/// turned.
 bool turn_regions(std::vector<SignedEdge>& edges, std::vector<std::int8_t>& sign, Index pole) {
     SignedForest forest(sign.size());
     std::vector<std::int8_t> turned = large_vector<std::int8_t>(sign.size(), 1);
-    undo(join_all(forest, edges, sign.size(),
-                  [&](const SignedEdge& e) { return e.weight > 0 && e.a != pole && e.b != pole; }),
-         turned);
+    const auto may_join = [&](const SignedEdge& e) { return e.weight > 0 && e.a != pole && e.b != pole; };
+    edges = undo(join_all(forest, std::move(edges), sign.size(), may_join), turned);
     if (std::ranges::none_of(turned, [](std::int8_t t) { return t < 0; })) return false;
     turn_evidence(edges, turned);
     for_each_index(sign.size(), chunks::light,
@@ -265,17 +268,21 @@ void merge_edges(std::vector<SignedEdge>& edges, std::size_t nodes) {
     edges.swap(sorted);
 }
 
-Signs agglomerate(std::size_t nodes, std::vector<SignedEdge> edges, Index pole) {
+Signs agglomerate(std::size_t nodes, const std::vector<SignedEdge>& edges, Index pole) {
     SignedForest forest(nodes);
     Signs result;
     assign_large(result.sign, nodes, 1);
-    undo(join_all(forest, edges, nodes, [](const SignedEdge&) { return true; }), result.sign);
-    turn_evidence(edges, result.sign);
-    for (int cycle = 0; cycle < enough_rounds && turn_regions(edges, result.sign, pole);) ++cycle;
-    double against = 0, all = 0;
-    for_each_in_order(edges.size(), [&](std::size_t e) {
-        all += std::abs(edges[e].weight);
-        against += std::max(-edges[e].weight, 0.0f);
+    std::vector<SignedEdge> merged = copy_of_large(edges);
+    merge_edges(merged, nodes);
+    const auto may_join = [](const SignedEdge&) { return true; };
+    merged = undo(join_all(forest, std::move(merged), nodes, may_join), result.sign);
+    turn_evidence(merged, result.sign);
+    for (int cycle = 0; cycle < enough_rounds && turn_regions(merged, result.sign, pole);) ++cycle;
+    double against = 0, all = 0; // before edges between the same nodes were added up
+    for_each_in_order(edges.size(), [&](std::size_t i) {
+        const SignedEdge& e = edges[i];
+        all += std::abs(e.weight);
+        against += std::max(-e.weight * static_cast<float>(result.sign[e.a] * result.sign[e.b]), 0.0f);
     });
     result.contradicted = all > 0 ? against / all : 0;
     resize_large(result.component, nodes);

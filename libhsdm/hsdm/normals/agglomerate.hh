@@ -39,6 +39,6 @@ struct Signs {
 /// one. `pole`: a node with evidence on many others (the surroundings), which joins none of them again:
 /// regions tied together by it alone are not one. O(e log n) a time. The result does not depend on the order
 /// of the edges beyond the last bit of their sums.
-Signs agglomerate(std::size_t nodes, std::vector<SignedEdge> edges, Index pole = no_index);
+Signs agglomerate(std::size_t nodes, const std::vector<SignedEdge>& edges, Index pole = no_index);
 
 } // namespace hsdm

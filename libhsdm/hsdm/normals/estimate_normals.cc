@@ -5,7 +5,7 @@
 #include "hsdm/core/constants.hh"
 #include "hsdm/core/large_vector.hh"
 #include "hsdm/normals/constants.hh"
-#include "hsdm/normals/height_fit.hh"
+#include "hsdm/normals/eight_fits.hh"
 #include "hsdm/normals/neighborhood.hh"
 #include "hsdm/normals/noise.hh"
 #include "hsdm/normals/plane_fit.hh"
@@ -16,6 +16,26 @@
 
 namespace hsdm {
 namespace {
+
+using EightPoints = std::array<Index, EightOffsets::lanes>;
+
+/// The first eight of some points; where there are fewer, the last one several times.
+EightPoints eight_of(const Index* first, std::size_t count) {
+    EightPoints points;
+    for (std::size_t lane = 0; lane < points.size(); ++lane) points[lane] = first[std::min(lane, count - 1)];
+    return points;
+}
+
+void gather(const Octree& octree, const Neighbors& neighbors, const EightPoints& points,
+            EightOffsets& offsets) {
+    offsets.count = neighbors.count;
+    for (std::size_t lane = 0; lane < points.size(); ++lane) {
+        const Vec3 at = octree.positions[points[lane]];
+        const auto around = neighbors.of(points[lane]);
+        for (std::size_t k = 0; k < around.size(); ++k)
+            offsets.set(k, lane, octree.positions[around[k]] - at);
+    }
+}
 
 /// Computes new normals from old ones, whose signs do not matter.
 class Renewal {
@@ -47,21 +67,18 @@ public:
         return sum.sqrnorm() > 0 ? sum.normalized() : own;
     }
 
-    /// For points away from creases that are not too flat, the results of curved().
+    /// For points away from creases that are not too flat, the results of curve().
     std::vector<Vec3> all_curved() const {
         std::vector<Vec3> renewed = unwritten_vector<Vec3>(octree_.size());
         for_chunks(octree_.size(), chunks::slow, [&](std::size_t begin, std::size_t end, std::size_t) {
-            std::array<Index, chunks::slow + 1> bent;
+            std::array<Index, chunks::slow> bent;
             std::size_t count = 0;
             for (std::size_t i = begin; i < end; ++i) {
                 renewed[i] = normals_[i];
                 if (may_be_curved(static_cast<Index>(i))) bent[count++] = static_cast<Index>(i);
             }
-            if (count % 2 == 1) bent[count] = bent[count - 1]; // the last one, of an odd number, twice
-            for (std::size_t b = 0; b < count; b += 2) {
-                const std::array<Vec3, 2> found = curved({bent[b], bent[b + 1]});
-                for (std::size_t lane = 0; lane < 2; ++lane) renewed[bent[b + lane]] = found[lane];
-            }
+            for (std::size_t b = 0; b < count; b += EightOffsets::lanes)
+                curve(eight_of(bent.data() + b, count - b), renewed);
         });
         return renewed;
     }
@@ -84,30 +101,24 @@ private:
     /// Away from creases it is turned towards that of a quadratic surface: not at all up to where the tilt
     /// between the two is such that their expected errors are equal (twice what noise makes of it), as at the
     /// border of rough points, almost all of it where that is far exceeded.
-    std::array<Vec3, 2> curved(const std::array<Index, 2>& points) const {
-        std::array<Vec3, 2> u, v, x, y, z;
-        for (std::size_t lane = 0; lane < 2; ++lane) {
+    void curve(const EightPoints& points, std::vector<Vec3>& renewed) const {
+        std::array<Vec3, EightOffsets::lanes> u, v;
+        EightFrames frames;
+        for (std::size_t lane = 0; lane < points.size(); ++lane) {
             const Vec3& own = normals_[points[lane]];
             u[lane] = own.cross(std::abs(own[0]) < 0.6 ? Vec3(1, 0, 0) : Vec3(0, 1, 0)).normalized();
             v[lane] = own.cross(u[lane]);
             const double reach = neighbors_.reach[points[lane]];
-            x[lane] = u[lane] / reach, y[lane] = v[lane] / reach, z[lane] = own / reach;
+            frames.set(lane, {u[lane] / reach, v[lane] / reach, own / reach});
         }
-        const VectorPair xs(x[0], x[1]), ys(y[0], y[1]), zs(z[0], z[1]);
-        const NeighborhoodPair around(octree_, neighbors_, points);
-        HeightSums sums;
-        sums.add(Double2{}, Double2{}, Double2{});
-        for (std::size_t k = 0; k < around.size(); ++k) {
-            const VectorPair d = around.offset(k);
-            sums.add(xs | d, ys | d, zs | d);
-        }
-        const HeightFit fit = sums.fit();
-        std::array<Vec3, 2> result;
-        for (std::size_t lane = 0; lane < 2; ++lane)
-            result[lane] =
-                turned(normals_[points[lane]], u[lane] * fit.tilt[0][lane] + v[lane] * fit.tilt[1][lane],
-                       fit.variance[lane]);
-        return result;
+        EightOffsets offsets;
+        gather(octree_, neighbors_, points, offsets);
+        EightTilts tilts;
+        fit_lanes().front().tilts(offsets, frames, tilts);
+        for (std::size_t lane = 0; lane < points.size(); ++lane)
+            renewed[points[lane]] =
+                turned(normals_[points[lane]], u[lane] * tilts.tilt[0][lane] + v[lane] * tilts.tilt[1][lane],
+                       tilts.variance[lane]);
     }
     static Vec3 turned(const Vec3& own, const Vec3& tilt, double variance) {
         const double square = tilt.sqrnorm();
@@ -139,48 +150,30 @@ public:
         result_.noise = options.noise ? *options.noise : estimate_noise(octree_, neighbors_);
         choose_tolerance(options);
         find_bent();
-        for (int round = 0; round < options.rounds; ++round) renew([this](Index i) { return best_plane(i); });
-        for (int round = 0; round < options.rounds; ++round)
-            renew([this](Index i) {
-                return renewal_.differs(i, angles::smooth) ? renewal_.averaged(i) : result_.normals[i];
-            });
+        renew(options.rounds, [this](Index i) { return best_plane(i); });
+        renew(options.rounds, [this](Index i) {
+            return renewal_.differs(i, angles::smooth) ? renewal_.averaged(i) : result_.normals[i];
+        });
     }
 
 private:
     void fit_all() {
         for_chunks(octree_.size(), chunks::slow, [&](std::size_t begin, std::size_t end, std::size_t) {
-            for (std::size_t i = begin; i < end; i += 2) {
-                const std::array<Index, 2> points{static_cast<Index>(i),
-                                                  static_cast<Index>(std::min(i + 1, end - 1))};
-                const std::array<PlaneFit, 2> fits = fit_planes(sums_of(points));
-                for (std::size_t lane = 0; lane < 2; ++lane) {
-                    result_.normals[points[lane]] = fits[lane].normal;
-                    result_.spread[points[lane]] = std::sqrt(fits[lane].variance);
+            EightOffsets offsets;
+            EightPlanes planes;
+            for (std::size_t i = begin; i < end; i += EightOffsets::lanes) {
+                EightPoints points;
+                for (std::size_t lane = 0; lane < points.size(); ++lane)
+                    points[lane] = static_cast<Index>(std::min(i + lane, end - 1));
+                gather(octree_, neighbors_, points, offsets);
+                fit_lanes().front().planes(offsets, planes);
+                for (std::size_t lane = 0; lane < points.size(); ++lane) {
+                    const PlaneFit fit = planes.of(lane);
+                    result_.normals[points[lane]] = fit.normal;
+                    result_.spread[points[lane]] = std::sqrt(fit.variance);
                 }
             }
         });
-    }
-
-    /// Sums over each of two points and its neighbours.
-    std::array<PlaneSums, 2> sums_of(const std::array<Index, 2>& points) const {
-        const NeighborhoodPair around(octree_, neighbors_, points);
-        std::array<Double2, 3> first{};
-        std::array<Double2, 6> second{};
-        for (std::size_t k = 0; k < around.size(); ++k) {
-            const VectorPair d = around.offset(k);
-            for (std::size_t axis = 0; axis < 3; ++axis) {
-                first[axis] += d[axis];
-                second[axis] += d[axis] * d[axis];
-                second[3 + axis] += d[axis] * d[(axis + 1) % 3];
-            }
-        }
-        std::array<PlaneSums, 2> sums;
-        for (std::size_t lane = 0; lane < 2; ++lane) {
-            sums[lane].weight = static_cast<double>(1 + around.size());
-            sums[lane].first = {first[0][lane], first[1][lane], first[2][lane]};
-            for (std::size_t m = 0; m < second.size(); ++m) sums[lane].second[m] = second[m][lane];
-        }
-        return sums;
     }
 
     /// Chooses the tolerances; not below the spread of the flattest neighbour, because a neighbourhood that
@@ -203,13 +196,27 @@ private:
         });
     }
 
-    /// New normals for the bent points, all from the old ones.
+    /// New normals for the bent points, in each round all from the old ones. Where neither the point's nor a
+    /// neighbour's has changed in the round before, nothing does in this one.
     template <class NormalOf>
-    void renew(const NormalOf& normal_of) {
+    void renew(int rounds, const NormalOf& normal_of) {
         const std::vector<Index>& bent = result_.bent;
         std::vector<Vec3> renewed = unwritten_vector<Vec3>(bent.size());
-        for_each_index(bent.size(), chunks::heavy, [&](Index b) { renewed[b] = normal_of(bent[b]); });
-        for_each_index(bent.size(), chunks::light, [&](Index b) { result_.normals[bent[b]] = renewed[b]; });
+        std::vector<std::uint8_t> changed = large_vector<std::uint8_t>(octree_.size(), 0);
+        const auto is_due = [&](Index i) {
+            return changed[i] != 0
+                   || std::ranges::any_of(neighbors_.of(i), [&](Index j) { return changed[j] != 0; });
+        };
+        for (int round = 0; round < rounds; ++round) {
+            for_each_index(bent.size(), chunks::heavy, [&](Index b) {
+                renewed[b] = round == 0 || is_due(bent[b]) ? normal_of(bent[b]) : result_.normals[bent[b]];
+            });
+            for_each_index(bent.size(), chunks::light, [&](Index b) {
+                Vec3& normal = result_.normals[bent[b]];
+                changed[bent[b]] = normal != renewed[b];
+                normal = renewed[b];
+            });
+        }
     }
 
     /// How many neighbours lie on the plane with that normal through the point, or on the parallel one

@@ -30,24 +30,6 @@ inline Double2 agreement(Double2 cosine) {
            / (1 - neighborhoods::least_agreement);
 }
 
-/// The neighbours of two points, each as seen from its own.
-class NeighborhoodPair {
-public:
-    NeighborhoodPair(const Octree& octree, const Neighbors& neighbors, const std::array<Index, 2>& points)
-        : octree_(octree), points_(points), around_{neighbors.of(points[0]), neighbors.of(points[1])} {}
-    std::size_t size() const { return around_[0].size(); }
-    VectorPair offset(std::size_t k) const { return {offset(k, 0), offset(k, 1)}; }
-
-private:
-    Vec3 offset(std::size_t k, std::size_t lane) const {
-        return octree_.positions[around_[lane][k]] - octree_.positions[points_[lane]];
-    }
-
-    const Octree& octree_;
-    std::array<Index, 2> points_;
-    std::array<std::span<const Index>, 2> around_;
-};
-
 /// The neighbours of one point as seen from it.
 class Neighborhood {
 public:

@@ -82,7 +82,7 @@ SkyReading layers_taken(const Patches& patches, LayerReading&& layers, Signs& si
     reserve_large(edges, layers.edges.size() + patches.size());
     append_large(edges, layers.edges);
     add_views(layers.clear_sky, patches, edges);
-    layers.skyward = agglomerate(patches.size() + 1, std::move(edges), static_cast<Index>(patches.size()));
+    layers.skyward = agglomerate(patches.size() + 1, edges, static_cast<Index>(patches.size()));
     return take_layers(patches, layers, signs);
 }
 
@@ -127,7 +127,7 @@ PatchSigns sign_patches(const Patches& patches, std::vector<SignedEdge> edges, c
         const float vote = turning::sensor_weight * seen_by[p];
         if (vote != 0) edges.push_back({static_cast<Index>(p), outside, vote, std::abs(vote)});
     });
-    Signs signs = agglomerate(patches.size() + 1, std::move(edges), outside);
+    Signs signs = agglomerate(patches.size() + 1, edges, outside);
     const bool scanned = std::ranges::any_of(seen_by, [](float vote) { return vote != 0; });
     SkyReading sky;
     if (!scanned && signs.contradicted > turning::least_contradicted) {

@@ -175,7 +175,7 @@ std::vector<std::int8_t> classify(std::size_t regions, const std::vector<Sights>
             if (farther != no_index) relate(seen[p][1 - side].region, farther, weight * surely);
         }
     });
-    const Signs signs = agglomerate(regions, std::move(between));
+    const Signs signs = agglomerate(regions, between);
     std::vector<std::int8_t> kind(regions, 0);
     for (std::size_t r = 0; r < regions; ++r)
         if (signs.component[r] == signs.component[0])

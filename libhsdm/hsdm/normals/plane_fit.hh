@@ -30,7 +30,10 @@ struct PlaneFit {
 
 /// The plane with the least weighted sum of squared distances. O(1).
 PlaneFit fit_plane(const PlaneSums& sums);
-/// The planes of two sets of points, in little more time than one; the two do not affect each other.
-std::array<PlaneFit, 2> fit_planes(const std::array<PlaneSums, 2>& sums);
+
+/// A plane by what follows from the points' covariance: a vector along its normal, the variance along that,
+/// the trace, and the product of the other two eigenvalues' distances from the smallest, over the trace's
+/// square: without these two the points span no plane.
+PlaneFit plane_along(const Vec3& along, double variance, double trace, double gap);
 
 } // namespace hsdm
