@@ -1,9 +1,13 @@
 #include "hsdm/mesh/to_mesh.hh"
+#include "hsdm/quality/topology.hh"
 #include "hsdm/reconstruct.hh"
 #include "support/check.hh"
 #include "support/sample.hh"
 
 #include <catch2/catch.hpp>
+
+#include <cmath>
+#include <numbers>
 
 using namespace hsdm;
 using namespace hsdm::support;
@@ -17,6 +21,27 @@ PolygonMesh facets_of_scan(const PointCloud& cloud) {
 }
 
 } // namespace
+
+TEST_CASE("the ends of sharp edges do not stand out from the solid", "[contour][accuracy]") {
+    std::size_t far = 0, all = 0;
+    for (const double degrees : {12.0, 20.0})
+        for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+            const double angle = degrees * std::numbers::pi / 180;
+            const double c = std::cos(angle), s = std::sin(angle);
+            const Pose above =
+                turned({0, 0, 1}, angle, Vec3(0.6 * c - 0.3 * s - 0.4, 0.6 * s + 0.3 * c - 0.25, 0));
+            const Solid wedge =
+                (box({0.8, 0.5, 0.6}) - box({1.4, 0.6, 0.8}).placed(above)).placed(random_pose(seed));
+            const PolygonMesh mesh = facets_of_scan(sample(wedge, {.points = 3000, .seed = seed}));
+            INFO(degrees << " degrees, seed " << seed);
+            CHECK(measure_topology(mesh).euler == 2);
+            const double off = farthest_vertex(mesh, wedge);
+            CHECK(off < 0.75 * size_of_voxel);
+            far += off > 0.3 * size_of_voxel, ++all;
+        }
+    CAPTURE(far);
+    CHECK(20 * far <= all);
+}
 
 TEST_CASE("a thin plate ends less than a voxel from where it should", "[contour][accuracy]") {
     for (const std::uint64_t seed : {1u, 2u, 3u, 4u})

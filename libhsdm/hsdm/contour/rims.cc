@@ -41,16 +41,17 @@ public:
     /// Looks at the sets that cross the edges of the vertex's voxel, and at the voxel's own.
     SheetEnd operator()(Index dual, const Vec3& at) const {
         SheetEnd end;
+        const Index own = mesh_.duals.voxels[dual].voxel;
+        const bool is_beyond = own == no_index && mesh_.duals.open[dual] == 0;
         Index most = 0, last = no_index;
         const auto look = [&](Index s) {
-            most = std::max(most, most_around(sets_.sets[s]));
+            most = std::max(most, is_beyond ? most_around(sets_.sets[s]) : sets_.sets[s].count);
             find_nearest(s, at, end);
         };
         for (const FacetCorner corner : mesh_.duals.corners_of(dual)) {
             const Index s = mesh_.crossings.of(corner).set;
             if (std::exchange(last, s) != s) look(s);
         }
-        const Index own = mesh_.duals.voxels[dual].voxel;
         if (own != no_index)
             for (Index s = sets_.first[own]; s < sets_.first[own + 1]; ++s) look(s);
         // A full set covers about one face of a voxel.
@@ -84,11 +85,11 @@ private:
 
 /// The place of a vertex once its sheet ends a spacing beyond its points, and a tenth of what it went on
 /// farther, so that neighbours stay in order; or where it was.
-Vec3 drawn_in(const SheetEnd& end, const Vec3& p, VertexClass type, const Vec3& direction) {
+Vec3 drawn_in(const SheetEnd& end, const Vec3& p, VertexClass type, const Vec3& direction, double share) {
     const Vec3 way = end.nearest - p, across = direction * (direction | way);
     const Vec3 back = type == VertexClass::smooth ? way - across : across;
     const double distance = back.norm();
-    return distance > end.spacing ? p + back * (rims::drawn_share * (1 - end.spacing / distance)) : p;
+    return distance > end.spacing ? p + back * (share * (1 - end.spacing / distance)) : p;
 }
 
 /// Does a facet round a vertex turn over between two places of the vertices?
@@ -115,27 +116,28 @@ Vec3 amid(const DualMesh& mesh, Index dual, const std::vector<Vec3>& positions) 
     return sum / count;
 }
 
-/// Puts drawn vertices back round which a facet turns over; returns these.
-std::vector<Index> put_back(const DualMesh& mesh, const std::vector<Vec3>& placed, std::vector<Index> drawn,
-                            std::vector<Vec3>& positions) {
-    std::vector<Index> back;
-    for (std::size_t before = 1; before > 0;) {
-        std::vector<std::uint8_t> turning(drawn.size());
-        for_each_index(drawn.size(), chunks::slow,
-                       [&](Index i) { turning[i] = turns_over(mesh, drawn[i], placed, positions); });
-        before = drawn.size();
-        std::size_t kept = 0;
-        for (std::size_t i = 0; i < drawn.size(); ++i) {
-            if (turning[i] == 0) {
-                drawn[kept++] = drawn[i];
-                continue;
-            }
-            positions[drawn[i]] = placed[drawn[i]];
-            back.push_back(drawn[i]);
+/// Vertices round which a facet turns over go back, a quarter of the way at a time; returns these.
+std::vector<Index> put_back(const DualMesh& mesh, const std::vector<Vec3>& placed,
+                            const std::vector<Index>& moved, std::vector<Vec3>& positions) {
+    std::vector<Vec3> drawn;
+    drawn.reserve(moved.size());
+    for (const Index v : moved) drawn.push_back(positions[v]);
+    std::vector<std::uint8_t> quarters(moved.size(), 4), turning(moved.size());
+    for (bool any = true; any;) {
+        for_each_index(moved.size(), chunks::slow, [&](Index i) {
+            turning[i] = quarters[i] > 0 && turns_over(mesh, moved[i], placed, positions);
+        });
+        any = false;
+        for (std::size_t i = 0; i < moved.size(); ++i) {
+            if (!turning[i]) continue;
+            any = true;
+            const Vec3& from = placed[moved[i]];
+            positions[moved[i]] = from + (drawn[i] - from) * (0.25 * --quarters[i]);
         }
-        drawn.resize(kept);
-        before -= kept;
     }
+    std::vector<Index> back;
+    for (std::size_t i = 0; i < moved.size(); ++i)
+        if (quarters[i] < 4) back.push_back(moved[i]);
     return back;
 }
 
@@ -161,15 +163,16 @@ void draw_in_rims(const Octree& octree, const OctreeLevel& level, const NormalSe
                   const DualMesh& mesh, PlacedVertices& vertices) {
     const std::vector<Vec3> placed = copy_of_large(vertices.positions);
     const EndFinder end_of(octree, level, sets, mesh);
-    std::vector<Index> drawn = indices_where(mesh.duals.size(), chunks::slow, [&](Index v) {
+    const std::vector<Index> moved = indices_where(mesh.duals.size(), chunks::slow, [&](Index v) {
         if (vertices.classes[v] == VertexClass::corner
             || !(mesh.duals.open[v] || is_at_rim(mesh, v) || is_beyond_rim(mesh, v)))
             return false;
-        vertices.positions[v] =
-            drawn_in(end_of(v, placed[v]), placed[v], vertices.classes[v], vertices.directions[v]);
+        vertices.positions[v] = drawn_in(end_of(v, placed[v]), placed[v], vertices.classes[v],
+                                         vertices.directions[v], mesh.duals.open[v] ? 1 : rims::drawn_share);
         return vertices.positions[v] != placed[v];
     });
-    std::vector<Index> back = put_back(mesh, placed, std::move(drawn), vertices.positions);
+    std::vector<Index> back = put_back(mesh, placed, moved, vertices.positions);
+    std::erase_if(back, [&](Index v) { return mesh.duals.open[v] != 0; });
     ease_in(end_of, mesh, std::move(back), vertices.positions);
 }
 
