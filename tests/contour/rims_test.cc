@@ -23,24 +23,26 @@ PolygonMesh facets_of_scan(const PointCloud& cloud) {
 } // namespace
 
 TEST_CASE("the ends of sharp edges do not stand out from the solid", "[contour][accuracy]") {
-    std::size_t far = 0, all = 0;
-    for (const double degrees : {12.0, 20.0})
-        for (std::uint64_t seed = 1; seed <= 10; ++seed) {
-            const double angle = degrees * std::numbers::pi / 180;
-            const double c = std::cos(angle), s = std::sin(angle);
-            const Pose above =
-                turned({0, 0, 1}, angle, Vec3(0.6 * c - 0.3 * s - 0.4, 0.6 * s + 0.3 * c - 0.25, 0));
-            const Solid wedge =
-                (box({0.8, 0.5, 0.6}) - box({1.4, 0.6, 0.8}).placed(above)).placed(random_pose(seed));
-            const PolygonMesh mesh = facets_of_scan(sample(wedge, {.points = 3000, .seed = seed}));
-            INFO(degrees << " degrees, seed " << seed);
-            CHECK(measure_topology(mesh).euler == 2);
-            const double off = farthest_vertex(mesh, wedge);
-            CHECK(off < 0.75 * size_of_voxel);
-            far += off > 0.3 * size_of_voxel, ++all;
-        }
-    CAPTURE(far);
-    CHECK(20 * far <= all);
+    struct Wedge {
+        double degrees;
+        std::uint64_t seed;
+        double most; // voxels
+    };
+    // Poses in which the end face has no points in the edge's last voxel: 0.4 to 0.88 when rims alone were
+    // drawn in.
+    for (const auto& [degrees, seed, most] :
+         {Wedge{8, 15, 0.6}, {8, 16, 0.3}, {8, 28, 0.3}, {12, 23, 0.3}, {12, 28, 0.3}, {20, 36, 0.6}}) {
+        INFO(degrees << " degrees, seed " << seed);
+        const double angle = degrees * std::numbers::pi / 180;
+        const double c = std::cos(angle), s = std::sin(angle);
+        const Pose above =
+            turned({0, 0, 1}, angle, Vec3(0.6 * c - 0.3 * s - 0.4, 0.6 * s + 0.3 * c - 0.25, 0));
+        const Solid wedge =
+            (box({0.8, 0.5, 0.6}) - box({1.4, 0.6, 0.8}).placed(above)).placed(random_pose(seed));
+        const PolygonMesh mesh = facets_of_scan(sample(wedge, {.points = 3000, .seed = seed}));
+        CHECK(measure_topology(mesh).euler == 2);
+        CHECK(farthest_vertex(mesh, wedge) < most * size_of_voxel);
+    }
 }
 
 TEST_CASE("a thin plate ends less than a voxel from where it should", "[contour][accuracy]") {
