@@ -48,8 +48,8 @@ struct Octree {
     Vec3 origin{0, 0, 0}; ///< least corner of the bounding cube; positions below are relative to it
     double extent = 0; ///< edge of the bounding cube: the cloud's longest side, not padded, unless asked for
     Box bounds;        ///< box of the cloud, as the cloud has it but for the unit
-    /// Per point, level 21, ascending. May be freed once the last level is extracted, neighbours are found and
-    /// voxels counted: all of these ask for them.
+    /// Per point, level 21, ascending. May be freed once the last level is extracted, neighbours are found
+    /// and voxels counted: all of these ask for them.
     std::vector<MortonCode> codes;
     std::vector<Vec3> positions; ///< per point, relative to origin
     std::vector<Vec3> normals;   ///< per point, unit or (0, 0, 0); empty if the cloud has none

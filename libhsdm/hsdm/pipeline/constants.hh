@@ -44,8 +44,8 @@ namespace hsdm::uneven {
 inline constexpr double points_per_voxel = 1;
 
 /// points: of the same; of fewer, voxels that were asked for are warned of.
-/// Why: more than half are empty then. Of even spheres, tori and boxes, given normals or not, all six came out
-/// right with 0.8, three with 0.6, none with 0.47.
+/// Why: more than half are empty then. Of even spheres, tori and boxes, given normals or not, all six came
+/// out right with 0.8, three with 0.6, none with 0.47.
 inline constexpr double points_to_close = 0.6;
 
 /// points: of the same, on the coarsest level that helps.

@@ -49,8 +49,8 @@ public:
 
     /// Frees the codes; to be called when the last level is taken.
     void release_codes() { octree.codes = std::vector<MortonCode>(); }
-    /// Frees where points stand in the cloud, unless they have moved or scanners, colours or scalars of theirs
-    /// are asked for later; to be called when the last level is taken.
+    /// Frees where points stand in the cloud, unless they have moved or scanners, colours or scalars of
+    /// theirs are asked for later; to be called when the last level is taken.
     void release_sources(const PointView& cloud);
     /// Frees the normals; to be called when the last facets are made.
     void release_normals() { octree.normals = std::vector<Vec3>(); }
