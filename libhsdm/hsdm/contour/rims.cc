@@ -83,8 +83,8 @@ private:
     const DualMesh& mesh_;
 };
 
-/// The place of a vertex once its sheet ends a spacing beyond its points, and a tenth of what it went on
-/// farther, so that neighbours stay in order; or where it was.
+/// The place of a vertex once its sheet has that share less of what it goes on farther than a spacing beyond
+/// its points.
 Vec3 drawn_in(const SheetEnd& end, const Vec3& p, VertexClass type, const Vec3& direction, double share) {
     const Vec3 way = end.nearest - p, across = direction * (direction | way);
     const Vec3 back = type == VertexClass::smooth ? way - across : across;
@@ -142,18 +142,26 @@ std::vector<Index> put_back(const DualMesh& mesh, const std::vector<Vec3>& place
 }
 
 /// Moves vertices half of the way to the mean of their neighbours, until none ends farther off than a
-/// spacing.
-void ease_in(const EndFinder& end_of, const DualMesh& mesh, std::vector<Index> far,
-             std::vector<Vec3>& positions) {
+/// spacing, but for those round which a facet would turn over.
+void ease_in(const EndFinder& end_of, const DualMesh& mesh, const std::vector<Vec3>& placed,
+             std::vector<Index> far, std::vector<Vec3>& positions) {
     std::vector<Vec3> eased;
+    std::vector<std::uint8_t> turning;
     for (int round = 0; round < rims::rounds; ++round) {
-        std::erase_if(far, [&](Index v) {
-            const SheetEnd end = end_of(v, positions[v]);
-            return end.distance <= end.spacing;
+        far = gathered(far, indices_where(far.size(), chunks::heavy, [&](Index i) {
+                           const SheetEnd end = end_of(far[i], positions[far[i]]);
+                           return end.distance > end.spacing;
+                       }));
+        if (far.empty()) return;
+        eased.resize(far.size()), turning.resize(far.size());
+        for_each_index(far.size(), chunks::heavy, [&](Index i) {
+            eased[i] = 0.5 * (positions[far[i]] + amid(mesh, far[i], positions));
         });
-        eased.clear();
-        for (const Index v : far) eased.push_back(0.5 * (positions[v] + amid(mesh, v, positions)));
-        for (std::size_t i = 0; i < far.size(); ++i) positions[far[i]] = eased[i];
+        for (std::size_t i = 0; i < far.size(); ++i) std::swap(positions[far[i]], eased[i]);
+        for_each_index(far.size(), chunks::heavy,
+                       [&](Index i) { turning[i] = turns_over(mesh, far[i], placed, positions); });
+        for (std::size_t i = 0; i < far.size(); ++i)
+            if (turning[i] != 0) positions[far[i]] = eased[i];
     }
 }
 
@@ -173,7 +181,7 @@ void draw_in_rims(const Octree& octree, const OctreeLevel& level, const NormalSe
     });
     std::vector<Index> back = put_back(mesh, placed, moved, vertices.positions);
     std::erase_if(back, [&](Index v) { return mesh.duals.open[v] != 0; });
-    ease_in(end_of, mesh, std::move(back), vertices.positions);
+    ease_in(end_of, mesh, placed, std::move(back), vertices.positions);
 }
 
 } // namespace hsdm

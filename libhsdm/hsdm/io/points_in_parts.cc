@@ -63,7 +63,7 @@ PointsInParts::PointsInParts(std::vector<std::string> paths, const ReadOptions& 
             one_.emplace(io::read_points(bytes, options));
         sources_.push_back(std::move(source));
     }
-    moved_ptx_ = ptx_scanners.size() > 1
+    moved_ptx_ = ptx_scanners.size() > 1 && ptx_scanners.size() == sources_.size()
                  && std::ranges::count(ptx_scanners, ptx_scanners.front()) == std::ssize(ptx_scanners);
 }
 

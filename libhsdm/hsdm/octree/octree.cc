@@ -281,7 +281,7 @@ Octree build(const PointView& cloud, std::vector<Vec3>* ours, const OctreeOption
     if (cloud.size() == 0) throw Error("the cloud holds no point; nothing can be reconstructed");
     Octree octree;
     place_cube(cloud, options, octree);
-    const bool with_values = cloud.colors.count > 0 || !cloud.scalars.empty();
+    const bool with_values = options.tell_duplicates || cloud.colors.count > 0 || !cloud.scalars.empty();
     const StridedSpan normals = options.use_normals ? cloud.normals : StridedSpan();
     Order order = order_of_cloud(cloud, normals, options, octree);
     if (options.merge_duplicates)

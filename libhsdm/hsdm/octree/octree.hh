@@ -21,6 +21,7 @@ constexpr int deepest_level = 16;
 
 struct OctreeOptions {
     bool merge_duplicates = true; ///< points equal in position and normal count once
+    bool tell_duplicates = false; ///< keep who was merged, though the cloud has no colours and scalars
     bool use_normals = true;      ///< false: the octree has none, whether the cloud has or not
     bool skip_nonfinite = false;  ///< leave out points with a coordinate that is not finite
     double cube_extent = 0; ///< edge of the bounding cube, at least the cloud's longest side; 0: that side

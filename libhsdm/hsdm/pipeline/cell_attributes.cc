@@ -34,8 +34,8 @@ std::vector<std::int32_t> scanners_of(const ScratchCloud& cloud, const Octree& o
     if (!cloud.attributes().has_scanners()) return numbers;
     CellAttributes on_disk(cloud);
     resize_large(numbers, octree.size());
-    for (std::size_t i = 0; i < numbers.size(); ++i)
-        numbers[i] = cloud.attributes().scanner(on_disk.of(octree, i));
+    for_each_in_order(numbers.size(),
+                      [&](std::size_t i) { numbers[i] = cloud.attributes().scanner(on_disk.of(octree, i)); });
     return numbers;
 }
 
@@ -50,11 +50,14 @@ std::vector<char> take_attributes(const ScratchCloud& cloud, const VoxelRange& r
     const std::size_t begin = first_of(range.begin), end = first_of(range.end);
     std::vector<char> rows = large_vector<char>((end - begin) * bytes);
     CellAttributes on_disk(cloud);
-    for (std::size_t i = begin; i < end; ++i)
-        std::copy_n(on_disk.of(octree, i), bytes,
-                    rows.begin() + static_cast<std::ptrdiff_t>((i - begin) * bytes));
-    for (std::size_t i = 0; i < octree.size(); ++i)
+    for_each_in_order(end - begin, [&](std::size_t i) {
+        std::copy_n(on_disk.of(octree, begin + i), bytes,
+                    rows.begin() + static_cast<std::ptrdiff_t>(i * bytes));
+    });
+    for_each_index(octree.size(), chunks::light, [&](Index i) {
         octree.source[i] = i >= begin && i < end ? static_cast<Index>(i - begin) : 0;
+    });
+    octree.duplicates.clear(); // rows have the means of equal points, by other numbers
     return rows;
 }
 

@@ -61,8 +61,8 @@ private:
 
 /// Of all patches, by what parts find, in one pass, and one more where sheets may be layers. The first rank
 /// holds all patches and the pairs of them while it finds the signs, which may take so many bytes of memory;
-/// else throws Error. Which scanner of `options` saw a point the cloud
-/// tells, or the first one saw all. For all ranks at the same time.
+/// else throws Error. Which scanner of `options` saw a point the cloud tells, or the first one saw all. For
+/// all ranks at the same time.
 SignsOfAll find_signs(ScratchCloud& cloud, const CloudSurvey& survey, const Estimating& how,
                       const OrientOptions& options, const CloudPasses& passes, std::size_t memory,
                       PartStore& store);

@@ -266,10 +266,9 @@ Octree ScratchCloud::first_octree(const std::vector<CellRows>& parts, std::size_
     PointView view;
     view.positions = StridedSpan(rows.front().data(), rows.size(), sizeof(PointRow));
     view.normals = StridedSpan(rows.front().data() + 3, rows.size(), sizeof(PointRow));
-    if (attributes_.bytes() > 0) // whatever they are: of clouds that have some octrees tell who is equal
-        view.colors =
-            StridedSpan(reinterpret_cast<const std::uint8_t*>(rows.data()), rows.size(), sizeof(PointRow));
-    Octree octree = build_octree(view, options_);
+    OctreeOptions options = options_;
+    options.tell_duplicates = attributes_.bytes() > 0;
+    Octree octree = build_octree(view, options);
     if (attributes_.bytes() > 0) number_points(parts, octree);
     return octree;
 }

@@ -1,6 +1,7 @@
 #include "hsdm/simplify/simplify.hh"
 
 #include "hsdm/core/chunks.hh"
+#include "hsdm/core/constants.hh"
 #include "hsdm/core/interruption.hh"
 #include "hsdm/errors.hh"
 #include "hsdm/mesh/part_of.hh"
@@ -54,8 +55,8 @@ public:
 
     AdaptiveMesh run() {
         int round = 0;
-        while (round < options_.rounds && split_what_is_wrong() > 0) ++round;
-        if (round == options_.rounds || result_.points_beyond > result_.unreachable)
+        while (round < options_.rounds + kept_ && split_what_is_wrong() > 0) ++round;
+        if (round == options_.rounds + kept_ || result_.points_beyond > result_.unreachable)
             settle_for_fine();
         else
             decimate_leaves();
@@ -229,7 +230,7 @@ private:
     /// What is wrong where no leaf can be subdivided is so because doublets of the fine mesh were removed:
     /// those stay from now on. Returns how many they are.
     std::size_t keep_doublets(const Findings& found) {
-        if (found.is_empty()) return 0;
+        if (found.is_empty() || kept_ == repeats::twice) return 0;
         std::vector<std::uint8_t> wrong = large_vector<std::uint8_t>(coarse_.size());
         const auto mark_facet = [&](Index f) {
             for (Index v : result_.mesh.facet(f)) wrong[v] = 1;
@@ -239,14 +240,18 @@ private:
         for (Index v : found.far.fine_vertices) wrong[vertex_[v]] = 1;
         for (Index v : found.far.vertices) wrong[v] = 1;
         for (Index f : found.far.facets) mark_facet(f);
-        for (Index p : found.far_points.points)
-            if (const Index f = checks_->distances().nearest_facet(points_[p]); f != no_index) mark_facet(f);
+        for_each_in_order(found.far_points.points.size(), [&](std::size_t i) {
+            const Vec3& point = points_[found.far_points.points[i]];
+            if (const Index f = checks_->distances().nearest_facet(point); f != no_index) mark_facet(f);
+        });
         const std::vector<Index> kept = indices_where(fine_.vertex_count(), chunks::light, [&](Index v) {
             const LeafCluster& now = coarse_[vertex_[v]];
             return wrong[vertex_[v]] && is_own(places_[v]) && !(is_own(now) && now.cluster == v);
         });
-        if (!kept.empty()) stays_.resize(fine_.vertex_count(), 0);
+        if (kept.empty()) return 0;
+        stays_.resize(fine_.vertex_count(), 0);
         for (Index v : kept) stays_[v] = 1;
+        ++kept_;
         return kept.size();
     }
 
@@ -378,6 +383,7 @@ private:
     std::vector<LeafCluster> places_; // per fine vertex
     std::vector<Index> vertex_;       // per fine vertex, the vertex of the result
     std::vector<LeafCluster> coarse_; // per vertex of the result
+    int kept_ = 0;                    // rounds in which doublets were kept, beyond those of splitting
     std::vector<std::uint8_t> stays_; // per fine vertex, is it to stay though only two facets are left there?
     std::vector<Index> pinched_;      // facets of the fine mesh with opposite corners in one vertex
     RemeshedGroups remeshed_;         // results of the round before
