@@ -51,25 +51,25 @@ bool warns_of_small_voxels(const Report& report) {
 
 TEST_CASE("voxels too small for a surface of these points to close are warned of where they were asked for",
           "[pipeline]") {
-    const PointCloud even = sample(sphere(1), {.points = 20000});
+    const PointCloud even = sample(sphere(1), {.points = 5000});
     Octree octree;
-    CHECK(voxels_too_small(level_of(even, 6, octree)).count == 0); // 1.1 points to a voxel
-    const OctreeLevel fine = level_of(even, 7, octree);            // 0.27
+    CHECK(voxels_too_small(level_of(even, 5, octree)).count == 0); // 1.1 points to a voxel
+    const OctreeLevel fine = level_of(even, 6, octree);            // 0.27
     CHECK(voxels_too_small(fine).count > fine.size() / 2);
     ReconstructOptions options;
-    options.depth = 7;
+    options.depth = 6;
     const Report report = reconstruct(even, options).report;
     CHECK(warns_of_small_voxels(report));
     const auto said =
         std::ranges::find(report.warnings, std::string(warning_of::too_small), &Report::Warning::what);
     REQUIRE(said != report.warnings.end());
     CHECK(std::abs(said->where.norm() - 1) < 2 * report.grid.voxel_size);
-    options.depth = 6;
+    options.depth = 5;
     CHECK(reconstruct(even, options).report.warnings.empty());
     options.depth = {};
-    options.voxel_size = octree.voxel_size(7);
+    options.voxel_size = octree.voxel_size(6);
     CHECK(warns_of_small_voxels(reconstruct(even, options).report));
-    const auto levels = reconstruct_levels(even, 6, 7);
+    const auto levels = reconstruct_levels(even, 5, 6);
     REQUIRE(levels.size() == 2);
     CHECK_FALSE(warns_of_small_voxels(levels[0].report));
     CHECK(warns_of_small_voxels(levels[1].report));

@@ -56,7 +56,7 @@ std::vector<std::string> run_on(int count, const PointCloud& cloud, const TileOp
 
 } // namespace
 
-TEST_CASE("several ranks give the mesh of one piece, bit for bit", "[pipeline][slow]") {
+TEST_CASE("several ranks give the mesh of one piece, bit for bit", "[pipeline][tiles][slow]") {
     const int count = GENERATE(2, 3);
     PointCloud cloud = bored_box();
     SECTION("as it is") {}
@@ -100,7 +100,8 @@ TEST_CASE("several ranks give the mesh of one piece, bit for bit", "[pipeline][s
     CHECK(imbalance_of(how.ranks) <= count);
 }
 
-TEST_CASE("tiles of two ranks that know too little around them are made again with more", "[pipeline]") {
+TEST_CASE("tiles of two ranks that know too little around them are made again with more",
+          "[pipeline][tiles]") {
     const PointCloud cloud = bored_box();
     TileOptions tiles = small_tiles();
     tiles.most_points = 5000;
@@ -113,7 +114,7 @@ TEST_CASE("tiles of two ranks that know too little around them are made again wi
     CHECK(how.widened > 0);
 }
 
-TEST_CASE("ranks tell together what is small beside the largest part", "[pipeline]") {
+TEST_CASE("ranks tell together what is small beside the largest part", "[pipeline][tiles]") {
     const PointCloud cloud = bored_box();
     std::optional<Reconstruction> result;
     TileReport how;
@@ -122,7 +123,7 @@ TEST_CASE("ranks tell together what is small beside the largest part", "[pipelin
     check_same_by_ranks(reconstruct(cloud, {.depth = 4}), *result);
 }
 
-TEST_CASE("ranks choose the voxels together", "[pipeline][slow]") {
+TEST_CASE("ranks choose the voxels together", "[pipeline][tiles][slow]") {
     PointCloud cloud;
     SECTION("by the spacing without an outlier") {
         cloud = bored_box();
@@ -140,7 +141,7 @@ TEST_CASE("ranks choose the voxels together", "[pipeline][slow]") {
     check_same_by_ranks(reconstruct(cloud, {}), *result);
 }
 
-TEST_CASE("ranks measure points that are far from all facets they were sent", "[pipeline]") {
+TEST_CASE("ranks measure points that are far from all facets they were sent", "[pipeline][tiles]") {
     PointCloud cloud = bored_box();
     PointCloud small = support::sample(support::box({0.1, 0.1, 0.1}), {.points = 600}); // is dropped
     for (Vec3& p : small.positions) p += Vec3(2, 1.5, 1);
@@ -163,7 +164,7 @@ TEST_CASE("ranks measure points that are far from all facets they were sent", "[
     }
 }
 
-TEST_CASE("ranks that no cell is left for have nothing to do", "[pipeline][slow]") {
+TEST_CASE("ranks that no cell is left for have nothing to do", "[pipeline][tiles][slow]") {
     PointCloud cloud = bored_box();
     for (std::size_t i = 0; i < 60000; ++i) { // most points in one cell
         cloud.positions.push_back(cloud.positions[0]);
@@ -177,7 +178,7 @@ TEST_CASE("ranks that no cell is left for have nothing to do", "[pipeline][slow]
     CHECK(std::ranges::count(how.ranks, std::size_t{0}, &Report::Rank::tiles) > 0);
 }
 
-TEST_CASE("what one rank cannot read no rank waits for", "[pipeline]") {
+TEST_CASE("what one rank cannot read no rank waits for", "[pipeline][tiles]") {
     const PointCloud cloud = bored_box();
     const int failing_pass = GENERATE(1, 2);
     const auto failures = support::run_ranks(3, [&](Ranks& ranks) {
@@ -193,7 +194,7 @@ TEST_CASE("what one rank cannot read no rank waits for", "[pipeline]") {
     CHECK(failures[2] == "scan.ply: cannot be read");
 }
 
-TEST_CASE("ranks refuse what tiles cannot do, all with one reason", "[pipeline]") {
+TEST_CASE("ranks refuse what tiles cannot do, all with one reason", "[pipeline][tiles]") {
     PointCloud cloud = bored_box();
     for (Vec3& p : cloud.positions) p *= 0x1p40;
     const auto failures = support::run_ranks(2, [&](Ranks& ranks) {

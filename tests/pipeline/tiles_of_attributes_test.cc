@@ -110,7 +110,7 @@ std::string bytes_written(const support::Folder& folder, const auto& write) {
 
 } // namespace
 
-TEST_CASE("colours and scalars come to the vertices of tiles as in one piece", "[pipeline][slow]") {
+TEST_CASE("colours and scalars come to the vertices of tiles as in one piece", "[pipeline][tiles][slow]") {
     ReconstructOptions options{.threads = 2};
     SECTION("of given normals, with outliers outside all others") {
         PointCloud cloud = painted_torus(true);
@@ -138,7 +138,7 @@ TEST_CASE("colours and scalars come to the vertices of tiles as in one piece", "
     }
 }
 
-TEST_CASE("they are in the files of flat arrays, of each format that has them", "[pipeline]") {
+TEST_CASE("they are in the files of flat arrays, of each format that has them", "[pipeline][tiles]") {
     const PointCloud cloud = painted_torus(true);
     const ReconstructOptions options{.depth = 5, .threads = 2};
     const Reconstruction whole = reconstruct(cloud, options);
@@ -162,7 +162,7 @@ TEST_CASE("they are in the files of flat arrays, of each format that has them", 
     }
 }
 
-TEST_CASE("what only some parts of a cloud have is left out, and told", "[pipeline]") {
+TEST_CASE("what only some parts of a cloud have is left out, and told", "[pipeline][tiles]") {
     PointCloud all = painted_torus(true);
     const auto half = [&](bool first) {
         PointCloud part;
@@ -191,7 +191,7 @@ TEST_CASE("what only some parts of a cloud have is left out, and told", "[pipeli
     CHECK(tiles.report.options.at("left_out") == "colours, range");
 }
 
-TEST_CASE("a run with colours goes on where one was ended", "[pipeline]") {
+TEST_CASE("a run with colours goes on where one was ended", "[pipeline][tiles]") {
     const PointCloud cloud = painted_torus(true);
     const ReconstructOptions options{.depth = 5, .threads = 2};
     const Reconstruction whole = reconstruct(cloud, options);
@@ -215,7 +215,7 @@ TEST_CASE("a run with colours goes on where one was ended", "[pipeline]") {
     }
 }
 
-TEST_CASE("points face their own scanners in tiles as in one piece", "[pipeline][slow]") {
+TEST_CASE("points face their own scanners in tiles as in one piece", "[pipeline][tiles][slow]") {
     ReconstructOptions options{.depth = 4, .holes = Holes::keep, .threads = 2};
     PointCloud cloud = seen_from_three_places(0);
     SECTION("of estimated normals, and some of which no scanner is known") {
@@ -243,7 +243,7 @@ TEST_CASE("points face their own scanners in tiles as in one piece", "[pipeline]
     CHECK((cloud.has_normals() ? whole.report.rejected.at("normals_mended") > 0 : true));
 }
 
-TEST_CASE("parts that tell of their scanners know what joined scans know", "[pipeline]") {
+TEST_CASE("parts that tell of their scanners know what joined scans know", "[pipeline][tiles]") {
     std::vector<PointCloud> scans(3);
     const PointCloud sheet = open_sheet(2700);
     for (std::size_t i = 0; i < sheet.size(); ++i) scans[i / 900].positions.push_back(sheet.positions[i]);

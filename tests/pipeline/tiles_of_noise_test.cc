@@ -83,7 +83,7 @@ Reconstruction check_tiles_and_ranks(const PointCloud& cloud, const ReconstructO
 
 } // namespace
 
-TEST_CASE("noisy points are moved in tiles as in one piece", "[pipeline][slow]") {
+TEST_CASE("noisy points are moved in tiles as in one piece", "[pipeline][tiles][slow]") {
     const bool normals = GENERATE(false, true), chosen = GENERATE(false, true);
     const double spacings = normals == chosen ? 0.5 : 1.2; // which takes a thinned cloud to tell
     INFO(spacings << " spacings of noise" << (normals ? ", normals" : "") << (chosen ? ", any depth" : ""));
@@ -95,7 +95,7 @@ TEST_CASE("noisy points are moved in tiles as in one piece", "[pipeline][slow]")
     CHECK(whole.report.rejected.contains("points_moved") == (!normals || spacings > 1));
 }
 
-TEST_CASE("so are those of a wall as thin as the noise is wide", "[pipeline][slow]") {
+TEST_CASE("so are those of a wall as thin as the noise is wide", "[pipeline][tiles][slow]") {
     const double sigma = 1.1 * std::sqrt(2.0 / noisy_points);
     const support::Solid plate = support::in_general_pose(support::box({1, 1, 4 * sigma}));
     const PointCloud cloud = noisy_scan(plate, 2, false, 1.1);
@@ -105,7 +105,7 @@ TEST_CASE("so are those of a wall as thin as the noise is wide", "[pipeline][slo
 }
 
 TEST_CASE("normals that scatter or contradict each other are mended in tiles as in one piece",
-          "[pipeline][slow]") {
+          "[pipeline][tiles][slow]") {
     const bool chosen = GENERATE(false, true), scatter = GENERATE(false, true), turn = GENERATE(false, true);
     if (!scatter && !turn) return;
     const double position_noise = chosen == (scatter && turn) ? 0 : 0.01;
@@ -122,7 +122,7 @@ TEST_CASE("normals that scatter or contradict each other are mended in tiles as 
     CHECK((whole.report.rejected.at("normals_mended") > 0) == turn);
 }
 
-TEST_CASE("normals face the scanner in tiles as in one piece", "[pipeline][slow]") {
+TEST_CASE("normals face the scanner in tiles as in one piece", "[pipeline][tiles][slow]") {
     PointCloud cloud;
     support::Random random(5);
     for (std::size_t i = 0; i < noisy_points; ++i) {
@@ -152,12 +152,12 @@ TEST_CASE("normals face the scanner in tiles as in one piece", "[pipeline][slow]
     }
 }
 
-TEST_CASE("noise that is far wider than the voxels asked for is refused in tiles", "[pipeline]") {
+TEST_CASE("noise that is far wider than the voxels asked for is refused in tiles", "[pipeline][tiles]") {
     const PointCloud cloud = noisy_scan(support::sphere(1), 12, false, 1);
     CHECK_THROWS_AS(reconstruct_in_tiles(view_of(cloud), {.depth = 12}, noisy_tiles()), RefusedInTiles);
 }
 
-TEST_CASE("where coarser voxels would help tiles say so, and one size is done", "[pipeline]") {
+TEST_CASE("where coarser voxels would help tiles say so, and one size is done", "[pipeline][tiles]") {
     const PointCloud cloud = support::thinned_on_one_side(
         support::sample(support::sphere(1), {.points = 20000}), Vec3(1, 0, 0), 0.3, 30);
     CHECK_THROWS_AS(reconstruct_in_tiles(view_of(cloud), {}, noisy_tiles()), RefusedInTiles);
@@ -167,7 +167,7 @@ TEST_CASE("where coarser voxels would help tiles say so, and one size is done", 
                        reconstruct_in_tiles(view_of(cloud), options, noisy_tiles()));
 }
 
-TEST_CASE("parts of a cloud tell where coarser voxels help as the whole does", "[pipeline]") {
+TEST_CASE("parts of a cloud tell where coarser voxels help as the whole does", "[pipeline][tiles]") {
     const PointCloud cloud = support::thinned_on_one_side(
         support::sample(support::sphere(1), {.points = 20000}), Vec3(1, 0, 0), 0.3, 30);
     const Octree whole = build_octree(cloud);

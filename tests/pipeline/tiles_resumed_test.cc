@@ -140,11 +140,12 @@ void check_faults(const PointCloud& cloud, const ReconstructOptions& options, st
 
 } // namespace
 
-TEST_CASE("a run in tiles goes on where one with a fault has ended", "[pipeline]") {
+TEST_CASE("a run in tiles goes on where one with a fault has ended", "[pipeline][tiles]") {
     check_faults(torus(true), {.depth = 4}, 13);
 }
 
-TEST_CASE("tiles whose pieces are lost are made again, and what is told of them forgotten", "[pipeline]") {
+TEST_CASE("tiles whose pieces are lost are made again, and what is told of them forgotten",
+          "[pipeline][tiles]") {
     const PointCloud cloud = torus(true);
     const ReconstructOptions options{.depth = 4};
     const support::Folder folder;
@@ -170,7 +171,7 @@ TEST_CASE("tiles whose pieces are lost are made again, and what is told of them 
     CHECK(run_with(1200).how.kept_tiles == last.how.tiles);
 }
 
-TEST_CASE("a run that goes on tells its own options, not those of the one before", "[pipeline]") {
+TEST_CASE("a run that goes on tells its own options, not those of the one before", "[pipeline][tiles]") {
     const PointCloud cloud = torus(true);
     const ReconstructOptions options{.depth = 4};
     ReconstructOptions others = options;
@@ -189,18 +190,18 @@ TEST_CASE("a run that goes on tells its own options, not those of the one before
 }
 
 TEST_CASE("wherever a run in tiles fails the next one goes on, whatever it has to find out",
-          "[pipeline][slow]") {
+          "[pipeline][tiles][slow]") {
     const bool normals = GENERATE(true, false);
     ReconstructOptions options;
     if (!normals) options.depth = 4; // else the voxel is chosen
     check_faults(torus(normals), options, normals ? 2 : 3);
 }
 
-TEST_CASE("so it does where noisy points have been moved", "[pipeline][slow]") {
+TEST_CASE("so it does where noisy points have been moved", "[pipeline][tiles][slow]") {
     check_faults(torus(false, 0.04), {.depth = 4}, 7);
 }
 
-TEST_CASE("so it does where normals have been mended", "[pipeline][slow]") {
+TEST_CASE("so it does where normals have been mended", "[pipeline][tiles][slow]") {
     PointCloud cloud = support::sample(support::torus(1, 0.4), {.points = 2500, .normal_noise = 0.4});
     for (std::size_t i = 0; i < cloud.size(); i += 5) cloud.normals[i] = -cloud.normals[i];
     cloud.positions.push_back({0.03, 0.02, 0.01});
@@ -208,7 +209,7 @@ TEST_CASE("so it does where normals have been mended", "[pipeline][slow]") {
     check_faults(cloud, {.depth = 4}, 7);
 }
 
-TEST_CASE("ranks go on with what all of them have kept", "[pipeline]") {
+TEST_CASE("ranks go on with what all of them have kept", "[pipeline][tiles]") {
     const PointCloud cloud = torus(true);
     const ReconstructOptions options{.depth = 4, .threads = 1};
     const Run whole = run_until(std::size_t{1} << 40, cloud, options, nullptr);
@@ -243,7 +244,7 @@ TEST_CASE("ranks go on with what all of them have kept", "[pipeline]") {
     CHECK(reads == 0);
 }
 
-TEST_CASE("what is kept of another job, or by another process, is told apart", "[pipeline]") {
+TEST_CASE("what is kept of another job, or by another process, is told apart", "[pipeline][tiles]") {
     const support::Folder folder;
     const auto refusal = [&](const std::vector<KeptScratch::Trait>& job) -> std::string {
         try {
@@ -280,7 +281,8 @@ TEST_CASE("what is kept of another job, or by another process, is told apart", "
     CHECK(std::filesystem::is_empty(folder / "."));
 }
 
-TEST_CASE("ranks that come back on other machines are told which, and begin nothing anew", "[pipeline]") {
+TEST_CASE("ranks that come back on other machines are told which, and begin nothing anew",
+          "[pipeline][tiles]") {
     const support::Folder folder;
     const auto on = [&](const std::vector<std::string>& machines) {
         return support::run_ranks(static_cast<int>(machines.size()), [&](Ranks& ranks) {
@@ -307,7 +309,7 @@ TEST_CASE("ranks that come back on other machines are told which, and begin noth
     CHECK(on({"d", "d", "d"}) == std::vector<std::string>(3)); // a folder that all see
 }
 
-TEST_CASE("of two that open and remove what is kept each has it for itself", "[pipeline]") {
+TEST_CASE("of two that open and remove what is kept each has it for itself", "[pipeline][tiles]") {
     const support::Folder folder;
     std::atomic<int> inside = 0, jobs = 0;
     std::atomic<bool> alone = true;

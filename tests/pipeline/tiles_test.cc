@@ -101,7 +101,7 @@ void write_as_command_does(const std::string& path, PolyMesh mesh, MeshFormat fo
 
 } // namespace
 
-TEST_CASE("tiles give the mesh of the run in one piece, bit for bit", "[pipeline][slow]") {
+TEST_CASE("tiles give the mesh of the run in one piece, bit for bit", "[pipeline][tiles][slow]") {
     PointCloud cloud = scan_for_tiles(false);
     cloud.positions.push_back({0.03, 0.11, 0.05}); // an outlier
     cloud.normals.push_back({0, 0, 1});
@@ -112,7 +112,7 @@ TEST_CASE("tiles give the mesh of the run in one piece, bit for bit", "[pipeline
     CHECK(how.tiles > 1);
 }
 
-TEST_CASE("tiles in flat arrays give the same files, whatever the cloud", "[pipeline][slow]") {
+TEST_CASE("tiles in flat arrays give the same files, whatever the cloud", "[pipeline][tiles][slow]") {
     const bool open = GENERATE(false, true), turned = GENERATE(false, true);
     PointCloud cloud = scan_for_tiles(open);
     if (turned)
@@ -153,7 +153,7 @@ TEST_CASE("tiles in flat arrays give the same files, whatever the cloud", "[pipe
     CHECK(one.error.points_to_mesh_rms == other.error.points_to_mesh_rms);
 }
 
-TEST_CASE("tiles that are cancelled in any phase leave no scratch", "[pipeline][slow]") {
+TEST_CASE("tiles that are cancelled in any phase leave no scratch", "[pipeline][tiles][slow]") {
     const PointCloud cloud = scan_for_tiles(false);
     const support::Folder folder;
     TileOptions tiles = tiles_of(25000);
@@ -171,7 +171,7 @@ TEST_CASE("tiles that are cancelled in any phase leave no scratch", "[pipeline][
     }
 }
 
-TEST_CASE("a file that is cut off between the passes over it is no cloud", "[pipeline]") {
+TEST_CASE("a file that is cut off between the passes over it is no cloud", "[pipeline][tiles]") {
     const support::Folder folder;
     const std::string path = folder / "scan.ply";
     support::write_ply(path, scan_for_tiles(false));
@@ -185,7 +185,7 @@ TEST_CASE("a file that is cut off between the passes over it is no cloud", "[pip
     CHECK(passes == 2);
 }
 
-TEST_CASE("so do tiles of any size, whatever the cloud", "[pipeline][slow]") {
+TEST_CASE("so do tiles of any size, whatever the cloud", "[pipeline][tiles][slow]") {
     const bool open = GENERATE(false, true);
     PointCloud cloud = scan_for_tiles(open);
     SECTION("as it is") {}
@@ -214,7 +214,7 @@ TEST_CASE("so do tiles of any size, whatever the cloud", "[pipeline][slow]") {
     CHECK(how.tiles > (open ? 1 : 4));
 }
 
-TEST_CASE("outliers that the cube was made for leave tiles another one", "[pipeline]") {
+TEST_CASE("outliers that the cube was made for leave tiles another one", "[pipeline][tiles]") {
     PointCloud cloud = scan_for_tiles(false);
     cloud.positions.push_back({0.7, 0.5, 0.4});
     cloud.positions.push_back({-0.2, 0.6, 0.1});
@@ -230,7 +230,7 @@ TEST_CASE("outliers that the cube was made for leave tiles another one", "[pipel
     CHECK((how.tiles > 1) == (*options.depth > 3)); // a cell of eight voxels is not divided
 }
 
-TEST_CASE("tiles choose the voxels that one piece chooses", "[pipeline][slow]") {
+TEST_CASE("tiles choose the voxels that one piece chooses", "[pipeline][tiles][slow]") {
     PointCloud cloud = scan_for_tiles(false);
     ReconstructOptions options;
     SECTION("by the spacing") {}
@@ -257,7 +257,7 @@ TEST_CASE("tiles choose the voxels that one piece chooses", "[pipeline][slow]") 
     CHECK(tiles.report.options.at("resolution") == whole.report.options.at("resolution"));
 }
 
-TEST_CASE("points that come in many parts are the same cloud", "[pipeline]") {
+TEST_CASE("points that come in many parts are the same cloud", "[pipeline][tiles]") {
     const PointCloud cloud = scan_for_tiles(false);
     const PointParts parts = [&](const auto& visit) {
         for (std::size_t first = 0; first < cloud.size(); first += 7000) {
@@ -274,7 +274,7 @@ TEST_CASE("points that come in many parts are the same cloud", "[pipeline]") {
 }
 
 TEST_CASE("neighbours that know too little around them to agree are made again with more",
-          "[pipeline][slow]") {
+          "[pipeline][tiles][slow]") {
     const PointCloud cloud = scan_for_tiles(true);
     const ReconstructOptions options{.depth = 6};
     TileOptions tiles = tiles_of(12000);
@@ -285,7 +285,7 @@ TEST_CASE("neighbours that know too little around them to agree are made again w
     CHECK(how.widened > 0);
 }
 
-TEST_CASE("what is small beside the largest part is judged by all tiles together", "[pipeline]") {
+TEST_CASE("what is small beside the largest part is judged by all tiles together", "[pipeline][tiles]") {
     const PointCloud cloud = part_with_a_flake();
     const ReconstructOptions options{.depth = 4};
     const Reconstruction whole = reconstruct(cloud, options);
@@ -295,7 +295,7 @@ TEST_CASE("what is small beside the largest part is judged by all tiles together
     CHECK(how.tiles > 1);
 }
 
-TEST_CASE("tiles leave out what is too small to be asked for", "[pipeline][slow]") {
+TEST_CASE("tiles leave out what is too small to be asked for", "[pipeline][tiles][slow]") {
     const PointCloud cloud = part_with_a_flake();
     const ReconstructOptions options{.depth = 4, .min_component = MinComponent{100}};
     const Reconstruction whole = reconstruct(cloud, options);
@@ -306,7 +306,7 @@ TEST_CASE("tiles leave out what is too small to be asked for", "[pipeline][slow]
     CHECK(tiles.report.error.points_to_mesh_max > 0.1); // the points of the flake count
 }
 
-TEST_CASE("facets that pass through each other are parted by all tiles together", "[pipeline][slow]") {
+TEST_CASE("facets that pass through each other are parted by all tiles together", "[pipeline][tiles][slow]") {
     // A solid of which facets are left that moving vertices does not part.
     const PointCloud cloud = support::sample(support::random_solid(29), {.points = 40000, .seed = 29});
     const ReconstructOptions options{.depth = 6};
@@ -316,7 +316,7 @@ TEST_CASE("facets that pass through each other are parted by all tiles together"
     CHECK(how.tiles > 1);
 }
 
-TEST_CASE("what tiles cannot tell is refused, with the reason", "[pipeline][slow]") {
+TEST_CASE("what tiles cannot tell is refused, with the reason", "[pipeline][tiles][slow]") {
     PointCloud cloud = scan_for_tiles(false);
     const TileOptions tiles = tiles_of(25000);
     SECTION("extreme size") {
@@ -341,7 +341,7 @@ TEST_CASE("what tiles cannot tell is refused, with the reason", "[pipeline][slow
     }
 }
 
-TEST_CASE("points that change between two passes are an error", "[pipeline]") {
+TEST_CASE("points that change between two passes are an error", "[pipeline][tiles]") {
     PointCloud cloud = scan_for_tiles(false), fewer = cloud;
     SECTION("in number") {
         fewer.positions.resize(30000);

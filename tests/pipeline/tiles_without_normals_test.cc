@@ -53,7 +53,8 @@ support::Solid solid_for_tiles(int which) {
 
 } // namespace
 
-TEST_CASE("tiles of a cloud without normals give the mesh of one piece, bit for bit", "[pipeline][slow]") {
+TEST_CASE("tiles of a cloud without normals give the mesh of one piece, bit for bit",
+          "[pipeline][tiles][slow]") {
     const int which = GENERATE(0, 1, 2, 6);
     const PointCloud cloud = support::sample(solid_for_tiles(which), {.points = 8000, .normals = false});
     const std::optional<int> depth = which % 2 == 0 ? std::optional<int>(5) : std::nullopt;
@@ -66,7 +67,7 @@ TEST_CASE("tiles of a cloud without normals give the mesh of one piece, bit for 
     CHECK(how.tiles > 1);
 }
 
-TEST_CASE("tiles of many cells see as far as a thinly sampled part takes", "[pipeline][slow]") {
+TEST_CASE("tiles of many cells see as far as a thinly sampled part takes", "[pipeline][tiles][slow]") {
     const auto sampled = [](const support::Solid& solid, std::size_t points) {
         return support::sample(support::in_general_pose(solid), {.points = points, .normals = false});
     };
@@ -81,7 +82,7 @@ TEST_CASE("tiles of many cells see as far as a thinly sampled part takes", "[pip
     CHECK(how.tiles > 1);
 }
 
-TEST_CASE("several ranks do a cloud without normals to the bits of one piece", "[pipeline][slow]") {
+TEST_CASE("several ranks do a cloud without normals to the bits of one piece", "[pipeline][tiles][slow]") {
     PointCloud cloud = support::sample(solid_for_tiles(0), {.points = 8000, .normals = false});
     int count = 2;
     SECTION("as it is") {
@@ -110,14 +111,14 @@ TEST_CASE("several ranks do a cloud without normals to the bits of one piece", "
     check_as_one_piece(whole, *result);
 }
 
-TEST_CASE("normals are estimated anew in tiles where that is asked for", "[pipeline][slow]") {
+TEST_CASE("normals are estimated anew in tiles where that is asked for", "[pipeline][tiles][slow]") {
     const PointCloud cloud = support::sample(solid_for_tiles(0), {.points = 12000, .normal_noise = 0.3});
     const ReconstructOptions options{.depth = 5, .normals = NormalSource::estimate};
     check_as_one_piece(reconstruct(cloud, options),
                        reconstruct_in_tiles(view_of(cloud), options, tiles_with(8000)));
 }
 
-TEST_CASE("what tiles cannot tell of a cloud without normals is refused", "[pipeline]") {
+TEST_CASE("what tiles cannot tell of a cloud without normals is refused", "[pipeline][tiles]") {
     const auto refusal = [](const PointCloud& cloud, const TileOptions& tiles) -> std::string {
         try {
             reconstruct_in_tiles(view_of(cloud), {.depth = 5}, tiles);
