@@ -14,8 +14,6 @@
 
 #include <catch2/catch.hpp>
 
-#include <optional>
-
 using namespace hsdm;
 
 namespace {
@@ -91,15 +89,7 @@ Reconstruction check_everywhere(const PointCloud& cloud, const ReconstructOption
     TileReport how;
     check_same_values(whole, reconstruct_in_tiles(view_of(cloud), options, tiles_of_colors(), &how));
     CHECK(how.tiles > 1);
-    std::optional<Reconstruction> result;
-    for (const std::string& failure : support::run_ranks(3, [&](Ranks& ranks) {
-             Reconstruction made =
-                 reconstruct_in_tiles(support::share_of(cloud, ranks), options, tiles_of_colors(), ranks);
-             if (ranks.is_first()) result.emplace(std::move(made));
-         }))
-        CHECK(failure == "");
-    REQUIRE(result);
-    check_same_values(whole, *result);
+    check_same_values(whole, support::reconstruct_by_ranks(3, cloud, options, tiles_of_colors()));
     return whole;
 }
 

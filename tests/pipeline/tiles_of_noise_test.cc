@@ -13,8 +13,6 @@
 
 #include <catch2/catch.hpp>
 
-#include <optional>
-
 using namespace hsdm;
 
 namespace {
@@ -69,15 +67,7 @@ Reconstruction check_tiles_and_ranks(const PointCloud& cloud, const ReconstructO
     TileReport how;
     check_noisy_pieces(whole, reconstruct_in_tiles(view_of(cloud), options, noisy_tiles(), &how));
     CHECK(how.tiles > 1);
-    std::optional<Reconstruction> result;
-    const auto failures = support::run_ranks(3, [&](Ranks& ranks) {
-        Reconstruction made =
-            reconstruct_in_tiles(support::share_of(cloud, ranks), options, noisy_tiles(), ranks);
-        if (ranks.is_first()) result.emplace(std::move(made));
-    });
-    for (const std::string& failure : failures) CHECK(failure == "");
-    REQUIRE(result);
-    check_noisy_pieces(whole, *result);
+    check_noisy_pieces(whole, support::reconstruct_by_ranks(3, cloud, options, noisy_tiles()));
     return whole;
 }
 

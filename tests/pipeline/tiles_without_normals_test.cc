@@ -100,15 +100,7 @@ TEST_CASE("several ranks do a cloud without normals to the bits of one piece", "
     }
     const ReconstructOptions options{.depth = 5, .threads = 2};
     const Reconstruction whole = reconstruct(cloud, options);
-    std::optional<Reconstruction> result;
-    const auto failures = support::run_ranks(count, [&](Ranks& ranks) {
-        Reconstruction made =
-            reconstruct_in_tiles(support::share_of(cloud, ranks), options, tiles_with(3500), ranks);
-        if (ranks.is_first()) result.emplace(std::move(made));
-    });
-    for (const std::string& failure : failures) CHECK(failure.empty());
-    REQUIRE(result);
-    check_as_one_piece(whole, *result);
+    check_as_one_piece(whole, support::reconstruct_by_ranks(count, cloud, options, tiles_with(3500)));
 }
 
 TEST_CASE("normals are estimated anew in tiles where that is asked for", "[pipeline][tiles][slow]") {

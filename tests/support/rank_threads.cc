@@ -1,8 +1,11 @@
 #include "support/rank_threads.hh"
 
+#include "hsdm/errors.hh"
+
 #include <barrier>
 #include <cstdlib>
 #include <mutex>
+#include <optional>
 #include <thread>
 
 namespace hsdm::support {
@@ -86,6 +89,18 @@ PointParts share_of(const PointCloud& cloud, const Ranks& ranks) {
         }
         visit(view_of(part));
     };
+}
+
+Reconstruction reconstruct_by_ranks(int count, const PointCloud& cloud, const ReconstructOptions& options,
+                                    const TileOptions& tiles) {
+    std::optional<Reconstruction> result;
+    const auto failures = run_ranks(count, [&](Ranks& ranks) {
+        Reconstruction made = reconstruct_in_tiles(share_of(cloud, ranks), options, tiles, ranks);
+        if (ranks.is_first()) result.emplace(std::move(made));
+    });
+    for (const std::string& failure : failures)
+        if (!failure.empty()) throw Error(failure);
+    return std::move(result).value();
 }
 
 } // namespace hsdm::support

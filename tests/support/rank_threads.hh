@@ -21,4 +21,8 @@ std::vector<std::string> run_ranks_apart(int count, const std::function<void(Ran
 /// A rank's part of the points: every so-manieth, so that all of space has some of all.
 PointParts share_of(const PointCloud& cloud, const Ranks& ranks);
 
+/// What so many ranks make of a cloud that they share. Throws Error with what the first that failed did of.
+Reconstruction reconstruct_by_ranks(int count, const PointCloud& cloud, const ReconstructOptions& options,
+                                    const TileOptions& tiles);
+
 } // namespace hsdm::support

@@ -77,10 +77,6 @@ namespace hsdm::rims {
 /// Why: nearly all; what is left keeps neighbours in order, where all of it would lay them on one line.
 inline constexpr double drawn_share = 0.9;
 
-/// rounds: half of the way to the mean of the neighbours in each.
-/// Why: bounds the work, as for spikes.
-inline constexpr int rounds = 30;
-
 } // namespace hsdm::rims
 
 // spikes.hh

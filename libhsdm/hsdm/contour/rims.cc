@@ -147,7 +147,7 @@ void ease_in(const EndFinder& end_of, const DualMesh& mesh, const std::vector<Ve
              std::vector<Index> far, std::vector<Vec3>& positions) {
     std::vector<Vec3> eased;
     std::vector<std::uint8_t> turning;
-    for (int round = 0; round < rims::rounds; ++round) {
+    for (int round = 0; round < spikes::rounds; ++round) {
         far = gathered(far, indices_where(far.size(), chunks::heavy, [&](Index i) {
                            const SheetEnd end = end_of(far[i], positions[far[i]]);
                            return end.distance > end.spacing;
