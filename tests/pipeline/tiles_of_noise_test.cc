@@ -147,16 +147,6 @@ TEST_CASE("noise that is far wider than the voxels asked for is refused in tiles
     CHECK_THROWS_AS(reconstruct_in_tiles(view_of(cloud), {.depth = 12}, noisy_tiles()), RefusedInTiles);
 }
 
-TEST_CASE("where coarser voxels would help tiles say so, and one size is done", "[pipeline][tiles]") {
-    const PointCloud cloud = support::thinned_on_one_side(
-        support::sample(support::sphere(1), {.points = 20000}), Vec3(1, 0, 0), 0.3, 30);
-    CHECK_THROWS_AS(reconstruct_in_tiles(view_of(cloud), {}, noisy_tiles()), RefusedInTiles);
-    ReconstructOptions options{.holes = Holes::keep};
-    options.voxel_size = 0.1;
-    check_noisy_pieces(reconstruct(cloud, options),
-                       reconstruct_in_tiles(view_of(cloud), options, noisy_tiles()));
-}
-
 TEST_CASE("parts of a cloud tell where coarser voxels help as the whole does", "[pipeline][tiles]") {
     const PointCloud cloud = support::thinned_on_one_side(
         support::sample(support::sphere(1), {.points = 20000}), Vec3(1, 0, 0), 0.3, 30);

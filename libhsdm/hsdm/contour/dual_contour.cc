@@ -419,10 +419,7 @@ DualContour dual_contour(const Octree& octree, const OctreeLevel& level, const N
         if (count > 0) result.links.reset(), edited = true;
         return count;
     };
-    HandlesOfPart part{options.part, options.facets_of_whole};
-    result.handles_cut = cut_handles(octree, level, sets, result.voxel, result.mesh, result.links,
-                                     options.part.is_part() ? &part : nullptr);
-    result.handle_work = part.own;
+    result.handles_cut = cut_handles(octree, level, sets, result.voxel, result.mesh, result.links);
     edited |= result.handles_cut > 0;
     if (options.fill) {
         FillHolesOptions holes = options.holes;

@@ -30,9 +30,8 @@ struct DualContourOptions {
         true; ///< let quads that are triangles by their shape give way (collapse_flat_corners)
     /// the data go round the whole solid: it has no border (label_grid_signs, trim_unsupported)
     bool all_round = false;
-    PartVoxels part{};               ///< where the level is part of a larger one
-    std::size_t facets_of_whole = 0; ///< the same: of that one, about
-    TanglePlan tangles{};            ///< the same: what is done about intersections
+    PartVoxels part{};    ///< where the level is part of a larger one
+    TanglePlan tangles{}; ///< the same: what is done about intersections
     /// The same: facets of the largest component, at most SplinterOptions::enough(), when splinters are
     /// looked for the first time and the second.
     LargestOfWhole largest{};
@@ -66,7 +65,6 @@ struct DualContour {
     ManifoldCounts manifold;         ///< what make_manifold still had to mend at the end
     std::array<PartComponents, 2> components;   ///< with DualContourOptions::part
     TangleCounts tangles;                       ///< in the place of `intersections`
-    HandleWork handle_work;                     ///< the same: of own rings
     double misfit_placed = 0, misfit_moved = 0; ///< with RelaxOptions::part_of_whole: see there
 };
 

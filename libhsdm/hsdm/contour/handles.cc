@@ -210,20 +210,40 @@ private:
     std::vector<Index> ring_, beside_;
 };
 
+/// What may still be looked at in each block of voxels, whatever is looked at elsewhere.
+class BlockBudget {
+public:
+    explicit BlockBudget(const OctreeLevel& level) : block_(large_vector<Index>(level.size())) {
+        constexpr int to_block = 3 * handles::block_levels;
+        for_each_in_order(level.size(), [&](std::size_t v) {
+            if (v == 0 || level.codes[v] >> to_block != level.codes[v - 1] >> to_block) left_.push_back(0);
+            block_[v] = static_cast<Index>(left_.size() - 1);
+            left_.back() += handles::most_work;
+        });
+    }
+
+    bool is_spent(Index voxel) const { return left_[block_[voxel]] < 0; }
+    void spend(Index voxel, std::size_t facets) {
+        left_[block_[voxel]] -= static_cast<std::ptrdiff_t>(facets);
+    }
+
+private:
+    std::vector<Index> block_;         // per voxel
+    std::vector<std::ptrdiff_t> left_; // per block, facets; below 0: more was looked at
+};
+
 /// One round: all rings that can be cut without touching each other.
 class Round {
 public:
     Round(const Octree& octree, const OctreeLevel& level, const NormalSets& sets,
-          std::span<const Index> voxel, std::size_t& work, PolygonMesh& mesh,
-          std::optional<FacetLinks>& links, HandlesOfPart* part)
+          std::span<const Index> voxel, BlockBudget& budget, PolygonMesh& mesh,
+          std::optional<FacetLinks>& links)
         : mesh_(mesh),
           known_links_(links),
-          part_(part),
           sets_(sets),
           voxel_(voxel),
           witnesses_(octree, level, voxel, mesh),
-          work_(work),
-          most_work_(handles::most_work * std::max(mesh.facet_count(), part ? part->facets : 0)) {
+          budget_(budget) {
         const double voxel_size = level.voxel_size;
         has_wall_ = voxels_of_walls(sets, voxel, mesh);
         assign_large(contradicted_, mesh.facet_count(), 0);
@@ -241,21 +261,17 @@ public:
         assign_large(touched_, mesh_.vertex_count(), 0);
         assign_large(seen_, mesh_.facet_count(), 0);
         for_each_in_order(roots.size(), [&](std::size_t i) {
-            if (part_ ? !is_due(roots[i]) : work_ > most_work_) return;
+            if (budget_.is_spent(voxel_at(roots[i]))) return;
             Interruption::poll();
-            const std::size_t work = work_, rings = rings_.size();
+            work_ = 0;
             look_at(roots[i], vicinity);
-            if (part_) note_work(roots[i], work_ - work, rings_.size() > rings);
+            budget_.spend(voxel_at(roots[i]), work_);
         });
         for (const Ring& ring : rings_) open(ring);
         for (const auto& [v, place] : moves_) mesh_.positions[v] = place;
         if (rings_.empty()) known_links_ = std::move(links_);
         return rings_.size();
     }
-
-    /// Of the part.
-    std::size_t own_work() const { return own_work_; }
-    bool cuts_own() const { return cuts_own_; }
 
 private:
     struct Ring {
@@ -304,22 +320,6 @@ private:
     }
 
     Index voxel_at(Index root) const { return voxel_[mesh_.origin[root]]; }
-    bool is_far(Index root) const {
-        return !part_->voxels.owns(voxel_at(root)) && !part_->voxels.is_near(voxel_at(root));
-    }
-
-    /// Is there work left to do at a part's vertex? What is done far off, where the rim of the known may be
-    /// torn, does not count.
-    bool is_due(Index root) {
-        if (is_far(root)) return part_->far <= most_work_;
-        if (work_ - part_->far <= most_work_) return true;
-        return part_->own.is_complete = false;
-    }
-
-    void note_work(Index root, std::size_t work, bool cuts) {
-        if (is_far(root)) part_->far += work;
-        if (part_->voxels.owns(voxel_at(root))) own_work_ += work, cuts_own_ |= cuts;
-    }
 
     /// Keeps the ring at a vertex if it is to be cut.
     void look_at(Index root, Vicinity& vicinity) {
@@ -498,13 +498,11 @@ private:
 
     PolygonMesh& mesh_;
     std::optional<FacetLinks>& known_links_;
-    HandlesOfPart* part_;
     const NormalSets& sets_;
     std::span<const Index> voxel_;
     Witnesses witnesses_;
-    std::size_t& work_; // facets looked at, in all rounds
-    std::size_t most_work_, own_work_ = 0;
-    bool cuts_own_ = false;
+    BlockBudget& budget_;
+    std::size_t work_ = 0; // facets looked at for a vertex
     FacetLinks links_;
     std::vector<std::uint8_t> has_wall_;     // per voxel: passed by a wall or gap
     std::vector<std::uint8_t> contradicted_; // per facet
@@ -515,44 +513,14 @@ private:
     std::vector<std::pair<Index, Vec3>> moves_;
 };
 
-/// The rounds that a part's own rings make for: one after each in which some are cut.
-class OwnRounds {
-public:
-    void add(const Round& round, HandleWork& own) {
-        own.last = round.own_work();
-        work_ += own.last, ++rounds_;
-        if (makes_for_it_) own.work += std::exchange(work_, 0), own.rounds += std::exchange(rounds_, 0);
-        makes_for_it_ = round.cuts_own();
-    }
-
-private:
-    std::size_t work_ = 0, rounds_ = 0; // of those since
-    bool makes_for_it_ = true;
-};
-
 } // namespace
 
-bool HandleWork::fits(std::size_t facets) const {
-    return is_complete && 2 * work <= handles::most_work * facets;
-}
-
-void HandleWork::operator+=(const HandleWork& other) {
-    const std::size_t most = std::max(rounds, other.rounds);
-    work += (most - rounds) * last + other.work + (most - other.rounds) * other.last;
-    rounds = most;
-    last += other.last;
-    is_complete &= other.is_complete;
-}
-
 std::size_t cut_handles(const Octree& octree, const OctreeLevel& level, const NormalSets& sets,
-                        std::span<const Index> voxel, PolygonMesh& mesh, std::optional<FacetLinks>& links,
-                        HandlesOfPart* part) {
-    std::size_t cut = 0, work = 0;
-    OwnRounds own_rounds;
+                        std::span<const Index> voxel, PolygonMesh& mesh, std::optional<FacetLinks>& links) {
+    std::size_t cut = 0;
+    BlockBudget budget(level);
     for (int round = 0; round < enough_rounds; ++round) {
-        Round one(octree, level, sets, voxel, work, mesh, links, part);
-        const std::size_t rings = one.cut();
-        if (part) own_rounds.add(one, part->own);
+        const std::size_t rings = Round(octree, level, sets, voxel, budget, mesh, links).cut();
         cut += rings;
         if (rings == 0) break;
     }

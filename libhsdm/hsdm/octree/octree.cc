@@ -38,12 +38,6 @@ Vec3 directed_or_zero(const Vec3& n) {
     return length > 0 && std::isfinite(length) ? n : zero;
 }
 
-/// The unit vector, or (0, 0, 0); -0 becomes 0.
-Vec3 unit_with_one_zero(const Vec3& n) {
-    const double length = n.norm();
-    return length > 0 && std::isfinite(length) ? n / length + zero : zero;
-}
-
 /// change(vector) of the vectors at these places.
 template <class Change>
 std::vector<Vec3> gathered(const StridedSpan& rows, const std::vector<Index>& places, const Change& change) {
@@ -67,6 +61,11 @@ MortonCode code_of(const Vec3& relative, double scale) {
 }
 
 } // namespace
+
+Vec3 normal_in_octree(const Vec3& given) {
+    const double length = given.norm();
+    return length > 0 && std::isfinite(length) ? given / length + zero : zero; // -0 becomes 0
+}
 
 MortonCode code_at(const Vec3& relative, double extent) {
     return code_of(relative, cells / extent);
@@ -289,7 +288,7 @@ Octree build(const PointView& cloud, std::vector<Vec3>* ours, const OctreeOption
             merge_equal(cloud.positions, normals, order, with_values ? &octree.duplicates : nullptr);
     octree.codes = std::move(order.codes);
     octree.source = std::move(order.source);
-    if (normals.count > 0) octree.normals = gathered(normals, octree.source, unit_with_one_zero);
+    if (normals.count > 0) octree.normals = gathered(normals, octree.source, normal_in_octree);
     if (ours) *ours = std::vector<Vec3>();
     const double per_unit = 1 / options.unit;
     octree.positions = gathered(cloud.positions, octree.source,

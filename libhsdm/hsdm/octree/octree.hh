@@ -43,6 +43,21 @@ inline bool is_measured(Index source) {
     return source < between_points;
 }
 
+/// What these numbers tell.
+enum class PointKind : std::uint8_t { measured, between, completed };
+inline PointKind kind_of(Index source) {
+    if (is_measured(source)) return PointKind::measured;
+    return source == between_points ? PointKind::between : PointKind::completed;
+}
+/// And back; `number`: of a measured one.
+inline Index source_of(PointKind kind, Index number) {
+    if (kind == PointKind::measured) return number;
+    return kind == PointKind::between ? between_points : no_index;
+}
+
+/// A normal as an octree has it: the unit vector, or (0, 0, 0) if it has no direction.
+Vec3 normal_in_octree(const Vec3& given);
+
 /// The cloud in Morton order inside its bounding cube (Fig. 3b). One sort serves every level, 0 to 21: the
 /// voxels of a level are the runs of points whose codes agree in their first 3 * level bits.
 struct Octree {

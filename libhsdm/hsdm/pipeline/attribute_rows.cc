@@ -109,14 +109,20 @@ AttributeRows AttributeRows::of_vertices() const {
     return rows;
 }
 
+AttributeRows AttributeRows::with_kinds() const {
+    AttributeRows rows = *this;
+    if (!std::exchange(rows.has_kinds_, true)) ++rows.bytes_;
+    return rows;
+}
+
 std::int32_t AttributeRows::scanner(const char* row) const {
     std::int32_t number;
-    std::memcpy(&number, row + bytes_ - sizeof number, sizeof number);
+    std::memcpy(&number, row + scanner_at(), sizeof number);
     return number;
 }
 
 void AttributeRows::set_scanner(char* row, std::int32_t number) const {
-    std::memcpy(row + bytes_ - sizeof number, &number, sizeof number);
+    std::memcpy(row + scanner_at(), &number, sizeof number);
 }
 
 double AttributeRows::value(const char* row, std::size_t column) const {
@@ -163,6 +169,7 @@ void AttributeRows::write_mean(std::span<const char* const> rows, char* row) con
         set(row, k, average_of_equal(columns_[k].type, values));
     }
     if (has_scanners_) set_scanner(row, scanner(rows.front()));
+    if (has_kinds_) set_kind(row, kind(rows.front()));
 }
 
 PointView AttributeRows::view(const std::vector<char>& rows) const {
@@ -196,6 +203,13 @@ std::vector<VertexProperty> AttributeRows::properties_of(const std::vector<char>
                        [&](Index v) { property.values[v] = value(rows.data() + v * bytes_, k); });
     }
     return properties;
+}
+
+std::vector<double> AttributeRows::are_completed(const std::vector<char>& rows) const {
+    std::vector<double> are(rows.size() / bytes_);
+    for_each_index(are.size(), chunks::light,
+                   [&](Index v) { are[v] = kind(rows.data() + v * bytes_) == PointKind::completed; });
+    return are;
 }
 
 } // namespace hsdm

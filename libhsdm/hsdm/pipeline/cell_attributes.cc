@@ -40,8 +40,9 @@ std::vector<std::int32_t> scanners_of(const ScratchCloud& cloud, const Octree& o
 }
 
 std::vector<char> take_attributes(const ScratchCloud& cloud, const VoxelRange& range, Octree& octree) {
-    const std::size_t bytes = cloud.attributes().bytes();
-    if (cloud.attributes().columns().empty()) return {};
+    const AttributeRows& attributes = cloud.attributes();
+    const std::size_t bytes = attributes.bytes();
+    if (attributes.columns().empty() && !attributes.has_kinds()) return {};
     const int shift = 3 * (morton_levels - range.depth);
     const auto first_of = [&](MortonCode code) {
         return static_cast<std::size_t>(std::ranges::lower_bound(octree.codes, code << shift)
@@ -50,12 +51,16 @@ std::vector<char> take_attributes(const ScratchCloud& cloud, const VoxelRange& r
     const std::size_t begin = first_of(range.begin), end = first_of(range.end);
     std::vector<char> rows = large_vector<char>((end - begin) * bytes);
     CellAttributes on_disk(cloud);
-    for_each_in_order(end - begin, [&](std::size_t i) {
-        std::copy_n(on_disk.of(octree, begin + i), bytes,
-                    rows.begin() + static_cast<std::ptrdiff_t>(i * bytes));
-    });
-    for_each_index(octree.size(), chunks::light, [&](Index i) {
-        octree.source[i] = i >= begin && i < end ? static_cast<Index>(i - begin) : 0;
+    for_each_in_order(octree.size(), [&](std::size_t i) {
+        const bool is_own = i >= begin && i < end;
+        const auto number = static_cast<Index>(is_own ? i - begin : 0);
+        PointKind kind = PointKind::measured;
+        if (is_own || attributes.has_kinds()) {
+            const char* const row = on_disk.of(octree, i);
+            if (is_own) std::copy_n(row, bytes, rows.begin() + static_cast<std::ptrdiff_t>(number * bytes));
+            if (attributes.has_kinds()) kind = attributes.kind(row);
+        }
+        octree.source[i] = source_of(kind, number);
     });
     octree.duplicates.clear(); // rows have the means of equal points, by other numbers
     return rows;

@@ -26,7 +26,8 @@ private:
 /// Per point of an octree of whole cells the number of its scanner; empty if the cloud has none of several.
 std::vector<std::int32_t> scanners_of(const ScratchCloud& cloud, const Octree& octree);
 
-/// Rows of a tile's own points, which are numbered anew by these, in `octree.source`; all others by 0.
+/// Rows of a tile's own points, which are numbered anew by these, in `octree.source`; all others by 0. Points
+/// that were added have what tells their kind there.
 std::vector<char> take_attributes(const ScratchCloud& cloud, const VoxelRange& range, Octree& octree);
 
 } // namespace hsdm

@@ -20,23 +20,6 @@ PointCloud joined_cloud(const Octree& octree, const CompletedPoints& points) {
     return cloud;
 }
 
-/// A cube of the same voxels that holds a box: the octree's least corner moved by whole voxels, and more
-/// levels where it takes them.
-struct Cube {
-    Vec3 origin;
-    int depth;
-
-    Cube(const Octree& octree, const OctreeLevel& level, const Box& box, double shift)
-        : origin(octree.origin), depth(level.depth) {
-        const double h = level.voxel_size;
-        if (shift > 0) origin -= Vec3(shift * h, shift * h, shift * h);
-        for (unsigned k = 0; k < 3; ++k) {
-            if (box.lo[k] < origin[k]) origin[k] -= h * std::ceil((origin[k] - box.lo[k]) / h);
-            while (depth < morton_levels && origin[k] + std::ldexp(h, depth) < box.hi[k]) ++depth;
-        }
-    }
-};
-
 /// Per voxel, what a test says of the sources of its points.
 template <class Test>
 std::vector<std::uint8_t> voxels_where(const CompletedCloud& cloud, Test&& test) {
@@ -60,12 +43,24 @@ std::vector<std::uint8_t> CompletedCloud::measured_voxels() const {
     return voxels_where(*this, [](auto begin, auto end) { return std::any_of(begin, end, is_measured); });
 }
 
+CubeOfVoxels cube_around(const Box& box, const Vec3& origin, double voxel_size, int depth, double shift) {
+    CubeOfVoxels cube{origin, depth};
+    const double h = voxel_size;
+    if (shift > 0) cube.origin -= Vec3(shift * h, shift * h, shift * h);
+    for (unsigned k = 0; k < 3; ++k) {
+        double& least = cube.origin[k];
+        if (box.lo[k] < least) least -= h * std::ceil((least - box.lo[k]) / h);
+        while (cube.depth < morton_levels && least + std::ldexp(h, cube.depth) < box.hi[k]) ++cube.depth;
+    }
+    return cube;
+}
+
 CompletedCloud complete_cloud(const Octree& octree, const OctreeLevel& level, const CompletedPoints& points,
                               double shift, Index source_of_added) {
     PointCloud cloud = joined_cloud(octree, points);
     Box box;
     for (const Vec3& p : cloud.positions) box.add(p);
-    const Cube cube(octree, level, box, shift);
+    const CubeOfVoxels cube = cube_around(box, octree.origin, level.voxel_size, level.depth, shift);
     CompletedCloud completed;
     OctreeOptions options;
     options.merge_duplicates = false;

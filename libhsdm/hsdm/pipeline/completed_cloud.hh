@@ -18,6 +18,15 @@ struct CompletedCloud {
     std::vector<std::uint8_t> measured_voxels() const;
 };
 
+/// A cube of the same voxels that holds a box.
+struct CubeOfVoxels {
+    Vec3 origin; ///< least corner
+    int depth;   ///< levels, down to the voxels
+};
+/// The cube with this least corner and so many levels of voxels, moved down by `shift` of their edge, and by
+/// whole voxels and with more levels where it takes them.
+CubeOfVoxels cube_around(const Box& box, const Vec3& origin, double voxel_size, int depth, double shift);
+
 /// Adds points whose `source` is what is given, no_index or between_points; relative to the octree's origin,
 /// to those of a level. The voxels are moved down by `shift` of their edge along all axes, [0, 1). O(n),
 /// parallel.

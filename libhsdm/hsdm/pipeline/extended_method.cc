@@ -177,30 +177,24 @@ void make_facets(const MethodInput& measured, double done, const DualContourOpti
                                  [&] { return dual_contour(in.octree, in.level, draft.sets, options); });
 }
 
-/// What closes slits of a draft.
-struct SlitCompletion {
-    BoundaryLoops loops;
-    CompletedPoints points;
-    std::size_t border = 0; ///< edges of all of the draft's loops
-};
-
-SlitCompletion slit_completion(const MethodInput& in, const Draft& draft) {
-    const double h = in.level.voxel_size;
-    const BoundaryLoops loops = boundary_loops(draft.facets.mesh);
-    Slits slits = find_slits(draft.facets.mesh, loops,
-                             h * options_for(in, draft.report.input.spacing).holes.max_diameter);
-    // Where more than slits is open all is completed at once: what closes one loop may meet another's.
-    if (in.options.holes == Holes::complete && slits.loops.size() < loops.size()) return {};
-    SlitCompletion result{{}, points_across(slits, h), loops.vertices.size()};
-    result.loops = std::move(slits.loops);
-    return result;
+/// So that what is found on them is found on the joined facets of tiles, too.
+void order_by_voxels(const MethodInput& in, DualContour& facets) {
+    FacetKnowledge known;
+    known.links = std::move(facets.links), known.cells = std::move(facets.cells);
+    order_by_voxels(in.level.size(), facets.voxel, facets.mesh, known);
+    facets.links = std::move(known.links), facets.cells = std::move(known.cells);
 }
 
-/// Is a guess no worse than the draft that it completes: fewer edges without a second facet, no more facets
-/// that meet?
-bool is_better(const DualContour& guess, const DualContour& draft, const SlitCompletion& completion) {
-    return guess.intersections.after <= draft.intersections.after
-           && boundary_loops(guess.mesh).vertices.size() < completion.border;
+/// The loops of a draft's facets, which are in the order of voxels then if there are any; those of an
+/// adaptive grid keep theirs.
+BoundaryLoops loops_of(const MethodInput& in, DualContour& facets) {
+    if (!facets.links) facets.links = link_facets(facets.mesh);
+    if (std::ranges::find(facets.links->twin, no_index) == facets.links->twin.end()) return {};
+    if (!wants_adaptive(in.options)) {
+        order_by_voxels(in, facets);
+        if (!facets.links) facets.links = link_facets(facets.mesh);
+    }
+    return boundary_loops(facets.mesh, *facets.links);
 }
 
 /// Do most of the points whose scanner is known face it? If not, their normals point into solids.
@@ -256,15 +250,19 @@ struct Completing {
 /// Completes the slits of a draft, and once more where some are left, as long as that makes it better.
 void complete_slits(Completing how, Draft& draft) {
     const DualContourOptions options = options_for(how.measured, how.base.input.spacing);
-    for (int round = 1; round <= repeats::twice && draft.facets.holes.loops > draft.facets.holes.closed;
-         ++round, how.done += how.share) {
+    for (int round = 1; round <= repeats::twice; ++round, how.done += how.share) {
         const MethodInput in = draft.input(how.measured);
-        const SlitCompletion completion = in.phases.run("completion", how.done, draft.report.seconds.facets,
-                                                        [&] { return slit_completion(in, draft); });
+        const SlitCompletion completion =
+            in.phases.run("completion", how.done, draft.report.seconds.facets, [&] {
+                const BoundaryLoops loops = loops_of(in, draft.facets);
+                return slit_completion(in, how.base.input.spacing, draft.facets.mesh, loops);
+            });
         if (completion.loops.size() == 0) return;
         draft.facets.cells.reset(); // frees what is not needed any more
         Draft next = how.draft(in, completion.points, draft.report, 0, options);
-        if (!is_better(next.facets, draft.facets, completion)) {
+        if (!completion.is_better(next.facets.intersections.after,
+                                  boundary_loops(next.facets.mesh).vertices.size(),
+                                  draft.facets.intersections.after)) {
             draft.report.seconds = next.report.seconds;
             return;
         }
@@ -376,6 +374,7 @@ Draft helped_draft(const MethodInput& in, const Report& report, int levels) {
         if (above < levels) {
             next.report.seconds = draft.report.seconds;
             next.cloud = in.phases.run("sparse areas", done, next.report.seconds.facets, [&] {
+                order_by_voxels(draft.input(in.with(in.octree, areas.level(above + 1))), draft.facets);
                 PolygonMesh& facets = draft.facets.mesh;
                 const Vec3 moved =
                     draft.cloud ? draft.cloud->octree.origin - in.octree.origin : Vec3(0, 0, 0);
@@ -393,8 +392,7 @@ Draft helped_draft(const MethodInput& in, const Report& report, int levels) {
 
 Draft first_draft(const MethodInput& in, Report& report) {
     if (const int levels = levels_to_help(in, report); levels > 0) {
-        report.options["resolution"] +=
-            ", and up to " + std::to_string(1 << levels) + " times as wide where the points are sparser";
+        note_coarser_levels(levels, report);
         return helped_draft(in, report, levels);
     }
     Draft draft{{}, report};
@@ -427,8 +425,6 @@ void FacetCounts::operator+=(const FacetCounts& other) {
     middle += other.middle, tilted += other.tilted;
     misfit_placed += other.misfit_placed, misfit_moved += other.misfit_moved;
     tangles += other.tangles;
-    handle_work += other.handle_work;
-    facets += other.facets;
 }
 
 PartFacets facets_of_part(const MethodInput& in, const PartOfLevel& part) {
@@ -438,7 +434,6 @@ PartFacets facets_of_part(const MethodInput& in, const PartOfLevel& part) {
     separate_patches(in.octree, in.level, related, sets);
     DualContourOptions options = options_for(in, part.spacing);
     const auto is_own = [&](Index voxel) { return part.owns(in.level.codes[voxel]); };
-    options.facets_of_whole = part.voxels; // a facet a voxel, mostly
     options.tangles = part.tangles;
     options.largest = part.largest;
     std::vector<std::uint8_t> own_voxels = large_vector<std::uint8_t>(in.level.size());
@@ -471,17 +466,21 @@ PartFacets facets_of_part(const MethodInput& in, const PartOfLevel& part) {
     result.counts.misfit_placed = facets.misfit_placed, result.counts.misfit_moved = facets.misfit_moved;
     result.counts.tangles = facets.tangles;
     result.components = std::move(facets.components);
-    result.counts.handle_work = facets.handle_work;
     result.mesh = std::move(facets.mesh);
     result.voxel = std::move(facets.voxel);
     return result;
 }
 
-bool has_slits(const MethodInput& in, double spacing, const PolygonMesh& facets, const FacetLinks& links) {
+SlitCompletion slit_completion(const MethodInput& in, double spacing, const PolygonMesh& facets,
+                               const BoundaryLoops& loops) {
+    if (loops.size() == 0) return {};
     const double h = in.level.voxel_size;
-    const BoundaryLoops loops = boundary_loops(facets, links);
-    return loops.size() > 0
-           && find_slits(facets, loops, h * options_for(in, spacing).holes.max_diameter).loops.size() > 0;
+    Slits slits = find_slits(facets, loops, h * options_for(in, spacing).holes.max_diameter);
+    // Where more than slits is open all is completed at once: what closes one loop may meet another's.
+    if (in.options.holes == Holes::complete && slits.loops.size() < loops.size()) return {};
+    SlitCompletion result{{}, points_across(slits, h), loops.vertices.size()};
+    result.loops = std::move(slits.loops);
+    return result;
 }
 
 } // namespace hsdm

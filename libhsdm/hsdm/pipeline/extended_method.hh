@@ -1,6 +1,7 @@
 #pragma once
 // Phase 2 by the extended method, section 3.4.2: graph and facets from normal-consistent sets.
 
+#include "hsdm/completion/complete_surface.hh"
 #include "hsdm/contour/dual_contour.hh"
 #include "hsdm/pipeline/method.hh"
 #include "hsdm/polygon_mesh.hh"
@@ -22,7 +23,6 @@ struct PartOfLevel {
     double typical_set = 0;   ///< points in a normal set, the mean over points
     bool turned = false;      ///< do the points' normals point into a closed solid?
     bool go_back = false;     ///< as in RelaxOptions
-    std::size_t voxels = 0;   ///< of the level
     TanglePlan tangles{};     ///< of the whole
     LargestOfWhole largest{}; ///< as in DualContourOptions
     /// Does the part own this voxel, or does it lie near those that it owns?
@@ -35,8 +35,6 @@ struct FacetCounts {
     std::size_t middle = 0, tilted = 0;         ///< as in SheetFeatures, of edges of own facets
     double misfit_placed = 0, misfit_moved = 0; ///< as in DualContour, of own voxels
     TangleCounts tangles;                       ///< as in DualContour
-    HandleWork handle_work;                     ///< as in DualContour
-    std::size_t facets = 0;                     ///< own ones
 
     void operator+=(const FacetCounts& other);
 };
@@ -50,13 +48,25 @@ struct PartFacets {
     std::array<PartComponents, 2> components; ///< as in DualContour
 };
 
-/// The local part of extended_method(): all but slits and what is missing, which are of the whole. `input`:
+/// The local part of extended_method(): all but points that are added. `input`:
 /// the points of the part and of what is around it. Throws Cancelled.
 PartFacets facets_of_part(const MethodInput& input, const PartOfLevel& part);
 
-/// Is some loop of facets that facets_of_part() made a slit, which extended_method() would close by points
-/// across? `links` are theirs.
-bool has_slits(const MethodInput& input, double spacing, const PolygonMesh& facets, const FacetLinks& links);
+/// What closes slits of facets.
+struct SlitCompletion {
+    BoundaryLoops loops;    ///< none: there are no slits
+    CompletedPoints points; ///< relative to the octree's origin
+    std::size_t border = 0; ///< edges of all loops of the facets
+
+    /// Are facets of which so many meet, with that much border, no worse than those of which `meeting` met?
+    bool is_better(std::size_t meeting_now, std::size_t border_now, std::size_t meeting) const {
+        return meeting_now <= meeting && border_now < border;
+    }
+};
+
+/// Of facets in the order of voxels, as facets_of_part() has them, and their loops.
+SlitCompletion slit_completion(const MethodInput& input, double spacing, const PolygonMesh& facets,
+                               const BoundaryLoops& loops);
 
 /// Do these facets of a closed solid face inward?
 bool faces_inward(const PolygonMesh& facets);

@@ -62,7 +62,7 @@ void refuse_moved(const std::string& folder, const std::vector<SeenByRank>& seen
 } // namespace
 
 std::string form_of_kept() {
-    constexpr int form = 5; // another one whenever something else is kept, or in another order
+    constexpr int form = 6; // another one whenever something else is kept, or in another order
     std::string text = std::to_string(form).append(":");
     for (const std::size_t size :
          {sizeof(Index), sizeof(PointRow), sizeof(Box), sizeof(ScratchPoints::Cell), sizeof(Occurrences),

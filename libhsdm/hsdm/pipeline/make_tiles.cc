@@ -75,7 +75,6 @@ private:
         if (record) return kept_piece(*record);
         const std::size_t far = strays_.far_cells().size();
         Piece piece = make_tile(range, ghost);
-        if (!piece.counts.handle_work.is_complete) refuse_handles();
         if (in_.store) in_.store->put(piece);
         if (in_.kept && in_.kept->is_kept() && !strays_.has_found()) keep(piece, key, ghost, far);
         return piece;
@@ -117,10 +116,6 @@ private:
         return in_.store->take_record(reader);
     }
 
-    static void refuse_handles() {
-        refuse_in_tiles("there are many tunnels and bridges that no points speak for");
-    }
-
     Piece make_tile(const VoxelRange& range, int ghost) {
         Piece piece;
         piece.range = range;
@@ -139,7 +134,6 @@ private:
             in_.survey.sums.set_sizes().typical(),
             turned_,
             known_.go_back,
-            in_.survey.sums.voxels(),
             known_.tangles,
             known_.largest,
             [&](MortonCode code) { return range.holds(code); },
@@ -168,7 +162,6 @@ private:
     /// Tiles to be made once more since sums over all tell something that these were not made by.
     std::vector<std::uint8_t> due_by_sums(const std::vector<Piece>& pieces) {
         const FacetCounts sums = counts_of_all(pieces);
-        if (!sums.handle_work.fits(sums.facets)) refuse_handles();
         std::vector<std::uint8_t> due(pieces.size(), 0);
         if (must_go_back(sums) || must_use_largest(pieces))
             std::ranges::fill(due, std::uint8_t{1});

@@ -11,6 +11,7 @@
 #include "hsdm/pipeline/cloud_noise.hh"
 #include "hsdm/pipeline/cloud_normals.hh"
 #include "hsdm/pipeline/cloud_smoothing.hh"
+#include "hsdm/pipeline/cloud_sparse_areas.hh"
 #include "hsdm/pipeline/constants.hh"
 #include "hsdm/pipeline/gather_pieces.hh"
 #include "hsdm/pipeline/kept_passes.hh"
@@ -20,6 +21,7 @@
 #include "hsdm/pipeline/sparse_areas.hh"
 #include "hsdm/pipeline/stray_search.hh"
 #include "hsdm/pipeline/tile_plan.hh"
+#include "hsdm/pipeline/tiled_draft.hh"
 #include "hsdm/pipeline/whole_of_tiles.hh"
 #include "hsdm/pipeline/work_of_ranks.hh"
 
@@ -191,7 +193,7 @@ private:
         cloud_->put_state(bytes);
         put(survey_.has_value(), bytes);
         if (survey_) survey_->sums.put_state(bytes), put(survey_->spacing, bytes);
-        put(duplicates_, bytes), put(estimates_, bytes);
+        put(duplicates_, bytes), put(estimates_, bytes), put(levels_, bytes);
         put(known_.has_layers, bytes), put(known_.outliers.has_value(), bytes);
         put(known_.outliers.value_or(Occurrences()), bytes);
         put(smoothed_, bytes), put(as_read_.has_value(), bytes);
@@ -215,6 +217,7 @@ private:
             survey_.emplace(CloudSurvey{std::move(sums), reader.take<double>()});
         }
         duplicates_ = reader.take<std::size_t>(), estimates_ = reader.take<bool>();
+        levels_ = reader.take<int>();
         known_.has_layers = reader.take<bool>();
         const bool has_outliers = reader.take<bool>();
         const auto outliers = reader.take<Occurrences>();
@@ -334,18 +337,8 @@ private:
                                 report_);
         if (!estimates_) smooth_for_voxels(noise, group);
         if (options_.depth && estimates_) survey_of_cube(group); // with normals
-        refuse_sparse(group);
-    }
-
-    /// Coarser voxels would help where the points are too few for those that follow from the spacing.
-    void refuse_sparse(std::size_t group) const {
-        if (options_.depth || options_.voxel_size) return;
-        SparseWindows windows(cloud_->depth());
-        cloud_->for_groups(group, [&](const Octree& part) { windows.add(part); });
-        windows.join(ranks_);
-        if (windows.levels_above() > 0)
-            refuse_in_tiles("points are far sparser in some places than in others, where coarser voxels help "
-                            "(--voxel-size has one size for all)");
+        levels_ = are_voxels_asked_for(options_, report_) ? 0 : levels_above_sparse(*cloud_, group);
+        note_coarser_levels(levels_, report_);
     }
 
     /// The spacing stays that of the cube before.
@@ -353,13 +346,11 @@ private:
         survey_->sums = survey_cloud(*cloud_, survey_->sums.points(), group).sums;
     }
 
-    /// All tiles; once more if normals point into the solid, as what is judged depends on the side.
     void make_facets(std::size_t group) {
-        make_facets(group, false);
-        const bool turned = ranks_.of_first(ranks_.is_first() && faces_inward(facets_.mesh));
-        if (turned) make_facets(group, true);
-        report_.grid.sets = facets_.counts.sets;
-        report_.rejected["normals_turned"] = turned ? survey_->sums.points() : 0;
+        facets_ = facets_of_drafts(
+            {*cloud_, *survey_, known_, options_, phases_, passes_of(group), ScratchPlace{tiles_.scratch},
+             levels_, [&](TiledDraft& draft, bool turned) { make_tiles_of(draft, turned, group); }},
+            report_);
         note_cloud(*cloud_, *survey_, duplicates_, known_, report_);
         note_dropped("noisy points between sheets", smoothed_.between, cloud_->frame(), report_);
         if (smoothed_.noise > 0) report_.rejected["points_moved"] = survey_->sums.points();
@@ -367,25 +358,31 @@ private:
             for (const char* name : {"normals_steadied", "normals_mended"}) report_.rejected[name];
     }
 
-    void make_facets(std::size_t group, bool turned) {
+    /// Facets of the points of a draft, or of the measured ones.
+    void make_tiles_of(TiledDraft& draft, bool turned, std::size_t group) {
+        ScratchCloud& cloud = draft.cloud ? *draft.cloud : *cloud_;
+        CloudSurvey& survey = draft.cloud ? *draft.survey : *survey_;
+        TilesKnown& known = draft.cloud ? draft.known : known_;
         store_.emplace(passes_.pieces(tiles_.scratch));
-        const TilesInput in{*cloud_,  *survey_, options_,
+        const TilesInput in{cloud,    survey,   options_,
                             phases_,  group,    tiles_.ghost_voxels,
                             &*store_, &passes_, [&] { keep(Pass::strays); }};
-        facets_ = WholeFacets();
+        draft.facets = WholeFacets();
         os::give_back_freed_memory();
         std::vector<VoxelRange> ranges;
         std::optional<std::vector<Piece>> pieces;
         do {
-            ranges =
-                plan(points_of_tile(tiles_, survey_->sums, bytes_of_voxel(), cloud_->attributes().bytes()));
-            count_tiles(ranges);
-            pieces = make_tiles(in, ranges, turned, known_, how_);
+            const std::size_t most =
+                points_of_tile(tiles_, survey.sums, bytes_of_voxel(), cloud.attributes().bytes());
+            ranges = plan(cloud, most, tiles_.ghost_voxels);
+            count_tiles(cloud, ranges);
+            pieces = make_tiles(in, ranges, turned, known, how_);
         } while (!pieces);
         gather_pieces(
-            *pieces, *store_, [&](std::size_t k) { return cloud_->owner_of(ranges[k]); }, ranks_);
+            *pieces, *store_, [&](std::size_t k) { return cloud.owner_of(ranges[k]); }, ranks_);
         os::give_back_freed_memory();
-        facets_ = join_tiles(std::move(*pieces), &*store_);
+        draft.facets = join_tiles(std::move(*pieces), &*store_);
+        draft.facets.rows = cloud.attributes().of_vertices();
     }
 
     VoxelBytes bytes_of_voxel() const {
@@ -397,10 +394,10 @@ private:
     static std::vector<VoxelRange> plan(const ScratchCloud& cloud, std::size_t most, int ghost) {
         return plan_tiles(cloud.cells(), {cloud.depth(), cloud.cell_depth(), ghost, most, cloud.borders()});
     }
-    void count_tiles(const std::vector<VoxelRange>& ranges) {
+    void count_tiles(const ScratchCloud& cloud, const std::vector<VoxelRange>& ranges) {
         how_.tiles = ranges.size();
         how_.own_tiles = static_cast<std::size_t>(std::ranges::count_if(
-            ranges, [&](const VoxelRange& range) { return cloud_->owner_of(range) == ranks_.rank(); }));
+            ranges, [&](const VoxelRange& range) { return cloud.owner_of(range) == ranks_.rank(); }));
     }
 
     const Clock::time_point start_ = Clock::now();
@@ -418,6 +415,7 @@ private:
     std::optional<PieceStore> store_;
     std::size_t duplicates_ = 0;
     bool estimates_ = false; // normals
+    int levels_ = 0;         // coarser ones, that help out where points are sparse
     TilesKnown known_;
     KeptPasses passes_;
     Ranks::Bytes normals_begun_; // and kept

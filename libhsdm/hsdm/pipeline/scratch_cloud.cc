@@ -278,7 +278,7 @@ void ScratchCloud::number_points(const std::vector<CellRows>& parts, Octree& oct
     const auto to_number = [&](Index& place) {
         const auto after = std::ranges::upper_bound(parts, place, {}, &CellRows::first);
         const CellRows& part = *(after - 1);
-        place = static_cast<Index>(part.number + (place - part.first));
+        place = part.number_of(place - part.first);
     };
     for_each_index(octree.size(), chunks::usual, [&](Index i) { to_number(octree.source[i]); });
     for (Octree::Duplicate& equal : octree.duplicates) to_number(equal.first), to_number(equal.other);
@@ -294,12 +294,12 @@ Octree ScratchCloud::arranged_octree(const std::vector<CellRows>& parts, std::si
         const CellRows& part = parts[k];
         std::vector<PointRow> whole;
         if (part.is_whole) scratch_->read(part.cell, whole);
-        auto i = static_cast<Index>(part.first), number = static_cast<Index>(part.number);
-        for (const PointRow& row : part.is_whole ? whole : part.rows) {
-            positions[i] = Vec3(row[0], row[1], row[2]);
-            if (has_normals_) octree.normals[i] = Vec3(row[3], row[4], row[5]);
-            octree.source[i] = number++;
-            ++i;
+        const std::vector<PointRow>& rows = part.is_whole ? whole : part.rows;
+        for (std::size_t r = 0; r < rows.size(); ++r) {
+            const std::size_t i = part.first + r;
+            positions[i] = Vec3(rows[r][0], rows[r][1], rows[r][2]);
+            if (has_normals_) octree.normals[i] = Vec3(rows[r][3], rows[r][4], rows[r][5]);
+            octree.source[i] = part.number_of(r);
         }
     });
     hsdm::rearrange(octree, std::move(positions), octree.extent);
@@ -370,19 +370,17 @@ VoxelRange ScratchCloud::cells_of(const VoxelRange& range) const {
 }
 
 /// Points of a cell within so many voxels of the range.
-std::vector<PointRow> ScratchCloud::rows_near(MortonCode cell, const VoxelRange& range, int ghost) const {
+void ScratchCloud::read_near(const VoxelRange& range, int ghost, CellRows& part) const {
     std::vector<PointRow> rows;
-    scratch_->read(cell, rows);
+    scratch_->read(part.cell, rows);
     const int to_level = 3 * (morton_levels - depth_);
     MortonCode voxel = ~MortonCode{0};
     bool is_near = false; // that voxel; points that come in order are asked about voxel by voxel
-    std::erase_if(rows, [&](const PointRow& row) {
-        const MortonCode at = code_at(relative_place(row), cube_extent()) >> to_level;
+    for (std::size_t i = 0; i < rows.size(); ++i) { // often a corner of the cell is near
+        const MortonCode at = code_at(relative_place(rows[i]), cube_extent()) >> to_level;
         if (at != voxel) voxel = at, is_near = range.is_near(morton_decode(voxel), ghost);
-        return !is_near;
-    });
-    rows.shrink_to_fit(); // often a corner of the cell
-    return rows;
+        if (is_near) part.rows.push_back(rows[i]), part.places.push_back(static_cast<Index>(i));
+    }
 }
 
 Octree ScratchCloud::octree_around(const VoxelRange& range, int ghost) const {
@@ -391,7 +389,7 @@ Octree ScratchCloud::octree_around(const VoxelRange& range, int ghost) const {
     for (const MortonCode cell : cells_near(of_cells, cells_within(ghost), cells_))
         parts.push_back({cell, of_cells.holds(cell)});
     for_each_task(parts.size(), [&](std::size_t k) {
-        if (!parts[k].is_whole) parts[k].rows = rows_near(parts[k].cell, range, ghost);
+        if (!parts[k].is_whole) read_near(range, ghost, parts[k]);
     });
     return octree_of(std::move(parts));
 }
@@ -467,26 +465,24 @@ Box ScratchCloud::box_of_points(std::size_t most) const {
     return {box.lo + origin(), box.hi + origin()};
 }
 
-ScratchCloud::ScratchCloud(const ScratchCloud& before, const Box& bounds, double extent, int depth,
-                           bool carries)
+ScratchCloud::ScratchCloud(const ScratchCloud& before, const Cube& cube, const AttributeRows& attributes,
+                           KeptScratch* kept)
     : extent_(before.extent_),
       frame_(before.frame_),
-      attributes_(carries ? before.attributes_ : AttributeRows()),
+      attributes_(attributes),
       options_(before.options_),
       none_(before.none_),
-      depth_(depth),
-      cell_depth_(cell_depth_of(depth)),
+      depth_(cube.depth),
+      cell_depth_(cell_depth_of(depth_)),
       most_waiting_(before.most_waiting_),
-      kept_(before.kept_),
+      kept_(kept),
       place_(new_place(kept_, before.place_.folder)),
       buffered_(before.buffered_),
       ranks_(before.ranks_),
       scratch_(std::make_unique<ScratchPoints>(place_, before.points_here(), buffered_, attributes_.bytes())),
       has_normals_(before.has_normals_),
       arranged_(true) {
-    none_.bounds = bounds;
-    if (extent != none_.extent) none_.origin = centred_origin(bounds, extent); // as rearrange() has it
-    none_.extent = extent;
+    none_.bounds = cube.bounds, none_.origin = cube.origin, none_.extent = cube.extent;
 }
 
 /// The same for points of another one that lie elsewhere in this cube.
@@ -503,7 +499,9 @@ void ScratchCloud::divide(const ScratchCloud& before, const Vec3& shift, std::si
 }
 
 void ScratchCloud::rearrange(const Box& bounds, double extent, int depth, std::size_t most) {
-    ScratchCloud next(*this, bounds, extent, depth, true);
+    // as rearrange() of an octree has it
+    const Vec3 corner = extent != cube_extent() ? centred_origin(bounds, extent) : origin();
+    ScratchCloud next(*this, {bounds, corner, extent, depth}, attributes_, kept_);
     const Vec3 shift = origin() - next.origin();
     next.divide(*this, shift, most);
     PointExchange exchange = exchange_into(next);
@@ -544,7 +542,7 @@ PointRow ScratchCloud::row_at(const Octree& octree, std::size_t point) {
 }
 
 ScratchCloud ScratchCloud::emptied(bool has_normals, bool carries) const {
-    ScratchCloud next(*this, bounds(), cube_extent(), depth_, carries);
+    ScratchCloud next(*this, cube(), carries ? attributes_ : AttributeRows(), kept_);
     next.begins_ = begins_;
     next.has_normals_ = has_normals;
     return next;

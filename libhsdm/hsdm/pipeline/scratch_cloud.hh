@@ -80,8 +80,7 @@ public:
     /// Fetches what other ranks have of these, so that octree_around() knows it. For all ranks at the same
     /// time.
     void fetch(const std::vector<Surroundings>& wanted);
-    /// The points of a range of this rank and of what was fetched around it; their `source` is their number,
-    /// but of cells that only some of are near.
+    /// The points of a range of this rank and of what was fetched around it; their `source` is their number.
     Octree octree_around(const VoxelRange& range, int ghost) const;
     /// Voxels along an edge of a cell.
     int cell_side() const { return 1 << (depth_ - cell_depth_); }
@@ -107,10 +106,18 @@ public:
     Box box_in_cube(std::size_t most) const;
     Box box_of_points(std::size_t most) const;
     static PointRow row_at(const Octree& octree, std::size_t point);
+    /// The same points in the same cube, but in voxels of this depth, without attributes. For all ranks at
+    /// the same time.
+    ScratchCloud in_voxels_of(int depth, std::size_t most) const;
+    /// As complete_cloud() of the whole with these points, which lie in the same cube and have no attributes,
+    /// in voxels of this depth; rows tell their kind. For all ranks at the same time.
+    ScratchCloud with_points(const ScratchCloud& added, PointKind kind, int depth, std::size_t most) const;
     /// The same cube and ranks without points: each rank gives those of its own cells, of a cell in the order
     /// of octrees, by add() and finish_sorted(), or any by fill(). `carries`: with their attributes. For all
     /// ranks at the same time.
     ScratchCloud emptied(bool has_normals, bool carries) const;
+    /// The same for points with normals alone that no pass keeps.
+    ScratchCloud emptied_aside() const;
     /// `beside`: the point's attributes, if it carries them.
     void add(const Octree& octree, std::size_t point, const char* beside = nullptr);
     void add(MortonCode code, const PointRow& row, const char* beside); ///< the same; `code`: of level 21
@@ -123,8 +130,17 @@ public:
     void take(ScratchCloud&& next);
 
 private:
-    /// Without points yet: those of another one, in another cube.
-    ScratchCloud(const ScratchCloud& before, const Box& bounds, double extent, int depth, bool carries);
+    struct Cube {
+        Box bounds;
+        Vec3 origin;
+        double extent;
+        int depth;
+    };
+    Cube cube() const { return {none_.bounds, none_.origin, none_.extent, depth_}; }
+    /// Without points yet: those of another one, in another cube. `kept`: null: its file has no name.
+    ScratchCloud(const ScratchCloud& before, const Cube& cube, const AttributeRows& attributes,
+                 KeptScratch* kept);
+    void move_points(const ScratchCloud& from, PointKind kind, std::size_t most, const PutRow& put_row) const;
     /// The cell of a position relative to the cube.
     MortonCode cell_of(const Vec3& relative) const;
     template <class Place>
@@ -135,7 +151,11 @@ private:
         MortonCode cell;
         bool is_whole;
         std::vector<PointRow> rows{};
+        std::vector<Index> places{};       // of these in the cell
         std::size_t first = 0, number = 0; // of its first point: place, as far as cells come in order
+        Index number_of(std::size_t row) const {
+            return static_cast<Index>(number + (is_whole ? row : places[row]));
+        }
     };
     void number_points(const std::vector<CellRows>& parts, Octree& octree) const;
     Octree first_octree(const std::vector<CellRows>& parts, std::size_t points) const;
@@ -145,7 +165,7 @@ private:
         return static_cast<std::size_t>(std::ranges::lower_bound(cells_, cell, {}, &ScratchPoints::Cell::code)
                                         - cells_.begin());
     }
-    std::vector<PointRow> rows_near(MortonCode cell, const VoxelRange& range, int ghost) const;
+    void read_near(const VoxelRange& range, int ghost, CellRows& part) const;
     /// By one of so many of this rank's points.
     void divide(std::span<const Vec3> sample, std::size_t stride);
     void divide(const ScratchCloud& before, const Vec3& shift, std::size_t most);

@@ -1,11 +1,9 @@
 #include "hsdm/pipeline/sparse_areas.hh"
 
-#include "hsdm/completion/constants.hh"
 #include "hsdm/core/chunks.hh"
 #include "hsdm/core/constants.hh"
-#include "hsdm/core/groups.hh"
 #include "hsdm/core/large_vector.hh"
-#include "hsdm/mesh/area_vector.hh"
+#include "hsdm/pipeline/bent_facets.hh"
 #include "hsdm/pipeline/constants.hh"
 
 #include <algorithm>
@@ -89,60 +87,6 @@ std::vector<SparseWindow> windows_of(const OctreeLevel& level) {
     return windows;
 }
 
-/// Per corner of the facets, the normal of the surface there on the facet's side of creases.
-std::vector<Vec3> corner_normals(const PolygonMesh& mesh) {
-    std::vector<Vec3> areas = large_vector<Vec3>(mesh.facet_count());
-    std::vector<Index> facet_of = large_vector<Index>(mesh.corners.size());
-    for_each_index(mesh.facet_count(), chunks::usual, [&](Index f) {
-        areas[f] = area_vector(mesh, mesh.facet(f));
-        std::fill(facet_of.begin() + mesh.first[f], facet_of.begin() + mesh.first[f + 1], f);
-    });
-    const Groups corners_at(mesh.corners, mesh.vertex_count());
-    std::vector<Vec3> normals = large_vector<Vec3>(mesh.corners.size());
-    for_each_index(mesh.corners.size(), chunks::usual, [&](Index c) {
-        const Vec3& own = areas[facet_of[c]];
-        Vec3 sum(0, 0, 0);
-        for (const Index other : corners_at.of(mesh.corners[c])) {
-            const Vec3& area = areas[facet_of[other]];
-            if ((area | own) > angles::one_sheet * area.norm() * own.norm()) sum += area;
-        }
-        normals[c] = unit(sum);
-    });
-    return normals;
-}
-
-/// Places all over a facet that is bent as the normals at its corners tell: halfway from where it is flat to
-/// the mean of the corners' planes, which is exact for a quadratic (Phong tessellation: Boubekeur, Alexa
-/// 2008). Calls put(place, normal).
-template <class Put>
-void for_places(const PolygonMesh& mesh, std::size_t f, const std::vector<Vec3>& normals, double voxel_size,
-                Put&& put) {
-    const auto ring = mesh.facet(f);
-    const Vec3* normal = normals.data() + mesh.first[f];
-    const std::size_t size = ring.size();
-    const Vec3 middle = centroid(mesh, ring);
-    std::vector<double> weight(size);
-    const auto place = [&](std::size_t i, double b, double c) {
-        std::fill(weight.begin(), weight.end(), (1 - b - c) / static_cast<double>(size));
-        weight[i] += b, weight[(i + 1) % size] += c;
-        Vec3 flat(0, 0, 0), along(0, 0, 0), lift(0, 0, 0);
-        for (std::size_t k = 0; k < size; ++k) flat += mesh.positions[ring[k]] * weight[k];
-        for (std::size_t k = 0; k < size; ++k) {
-            lift += normal[k] * (weight[k] * ((mesh.positions[ring[k]] - flat) | normal[k]));
-            along += normal[k] * weight[k];
-        }
-        if (along.norm() > 0) put(flat + lift * 0.5, unit(along));
-    };
-    for (std::size_t i = 0; i < size; ++i) {
-        const Vec3 &a = mesh.positions[ring[i]], &b = mesh.positions[ring[(i + 1) % size]];
-        const double twice = ((a - middle) % (b - middle)).norm();
-        const int n =
-            std::max(1, static_cast<int>(std::ceil(std::sqrt(twice) * completing::samples / voxel_size)));
-        for (int j = 0; j < n; ++j)
-            for (int k = 0; j + k < n; ++k) place(i, (j + 1.0 / 3) / n, (k + 1.0 / 3) / n);
-    }
-}
-
 } // namespace
 
 Occurrences voxels_too_small(const OctreeLevel& level) {
@@ -156,6 +100,12 @@ Occurrences voxels_too_small(const OctreeLevel& level) {
         result.add({window.voxels, Vec3(at[0] + 0.5, at[1] + 0.5, at[2] + 0.5) * level.voxel_size});
     });
     return small > uneven::most_sparse * all ? result : Occurrences();
+}
+
+void note_coarser_levels(int levels, Report& report) {
+    if (levels > 0)
+        report.options["resolution"] +=
+            ", and up to " + std::to_string(1 << levels) + " times as wide where the points are sparser";
 }
 
 int levels_above_sparse(const OctreeLevel& level) {
@@ -218,6 +168,10 @@ SparseAreas::SparseAreas(const Octree& octree, const OctreeLevel& level, int coa
     }
 }
 
+bool SparseAreas::lacks(const Vec3& place, const Vec3& normal, int above) const {
+    return !is_full(place, normal, above) && is_among_sparse(place, normal, above);
+}
+
 bool SparseAreas::is_full(const Vec3& place, const Vec3& normal, int above) const {
     const OctreeLevel& at = level(above);
     int count = 0;
@@ -251,18 +205,15 @@ bool SparseAreas::is_among_sparse(const Vec3& place, const Vec3& normal, int abo
 }
 
 CompletedPoints SparseAreas::points_between(const PolygonMesh& facets, int above) const {
-    const std::vector<Vec3> normals = corner_normals(facets);
-    const double h = level(above).voxel_size;
+    const BentFacets bent(facets, level(above).voxel_size);
     std::vector<CompletedPoints> parts(chunk_count(facets.facet_count(), chunks::heavy));
     for_chunks(facets.facet_count(), chunks::heavy,
                [&](std::size_t begin, std::size_t end, std::size_t chunk) {
-                   CompletedPoints& part = parts[chunk];
                    for (std::size_t f = begin; f < end; ++f)
-                       for_places(facets, f, normals, h, [&](const Vec3& place, const Vec3& normal) {
-                           if (is_full(place, normal, above) || !is_among_sparse(place, normal, above))
-                               return;
-                           part.positions.push_back(place);
-                           part.normals.push_back(normal);
+                       bent.for_places(f, [&](const Vec3& place, const Vec3& normal) {
+                           if (!lacks(place, normal, above)) return;
+                           parts[chunk].positions.push_back(place);
+                           parts[chunk].normals.push_back(normal);
                        });
                });
     CompletedPoints points;

@@ -5,6 +5,7 @@
 #include "hsdm/core/occurrences.hh"
 #include "hsdm/core/ranks.hh"
 #include "hsdm/octree/octree.hh"
+#include "hsdm/report.hh"
 
 namespace hsdm {
 
@@ -16,6 +17,9 @@ Occurrences voxels_too_small(const OctreeLevel& level);
 /// How many levels coarser than this one voxels are such that hardly any of the surface is too sparsely
 /// sampled for them; 0 where that holds for this level, at most uneven::most_levels. O(voxels), parallel.
 int levels_above_sparse(const OctreeLevel& level);
+
+/// Notes that so many levels help out.
+void note_coarser_levels(int levels, Report& report);
 
 /// Some voxels of a level within one of a coarser level, and their points.
 struct SparseWindow {
@@ -50,6 +54,9 @@ public:
         return above == 0 ? finest_ : coarser_[static_cast<std::size_t>(above) - 1];
     }
 
+    /// Are measured points too few for the voxels of the level `above` the finest, but not missing, at a
+    /// place of a surface that faces this way? Points within three voxels of the coarsest level tell.
+    bool lacks(const Vec3& place, const Vec3& normal, int above) const;
     /// Points on a mesh of facets of a coarser level, relative to the octree's origin, where measured points
     /// are too few for the voxels of the level `above` the finest, but not missing: within a ball about one
     /// that holds few others. As dense as completed ones, on the facets bent as the normals at their corners

@@ -41,11 +41,24 @@ public:
     std::vector<char> attributes(const MethodInput& in, const AttributeRows& rows) const {
         if (rows.bytes() == 0) return {};
         const std::span<const Index> own = std::span(part_.voxel).subspan(own_[0], own_[1] - own_[0]);
-        return rows.rows_of(average_attributes(in.cloud, in.octree, level_, own), own.size());
+        std::vector<char> of_own =
+            rows.rows_of(average_attributes(in.cloud, in.octree, level_, own), own.size());
+        for_each_index(rows.has_kinds() ? own.size() : 0, chunks::usual, [&](Index v) {
+            rows.set_kind(of_own.data() + v * rows.bytes(), kind_in(in.octree, own[v]));
+        });
+        return of_own;
     }
 
 private:
     using Range = std::array<Index, 2>;
+
+    /// Of the points of a voxel, the kind nearest to being measured.
+    PointKind kind_in(const Octree& octree, Index voxel) const {
+        PointKind least = PointKind::completed;
+        for (Index p = level_.first_point[voxel]; p < level_.first_point[voxel + 1]; ++p)
+            least = std::min(least, kind_of(octree.source[p]));
+        return least;
+    }
 
     MortonCode code_of(Index vertex) const { return level_.codes[part_.voxel[vertex]]; }
     Index rank_of(Index vertex) const { return vertex - first_of_[part_.voxel[vertex]]; }
@@ -148,7 +161,6 @@ Piece make_piece(const MethodInput& in, const PartOfLevel& part, const VoxelRang
     Piece piece = tile.piece();
     piece.attributes = tile.attributes(in, attributes);
     piece.counts = facets.counts;
-    piece.counts.facets = piece.first.size() - 1;
     piece.components = std::move(facets.components);
     return piece;
 }

@@ -85,10 +85,34 @@ FacetLinks rearranged(const FacetLinks& before, const PolygonMesh& old_mesh, con
 
 } // namespace
 
+namespace {
+
+/// Do vertices, all of which have facets, and facets come as order_by_voxels() puts them?
+bool are_in_order(const std::vector<Index>& voxel, const std::vector<std::uint8_t>& used,
+                  const PolygonMesh& mesh) {
+    const auto least = [&](std::size_t f) { return std::ranges::min(mesh.facet(f)); };
+    std::atomic<bool> are = true;
+    const auto check = [&](std::size_t count, std::size_t chunk, const auto& holds) {
+        for_chunks(count, chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+            for (std::size_t i = begin; i < end && are; ++i)
+                if (!holds(i)) are = false;
+        });
+    };
+    check(voxel.size(), chunks::light,
+          [&](std::size_t v) { return used[v] && (v == 0 || voxel[v - 1] <= voxel[v]); });
+    check(mesh.facet_count(), chunks::quick,
+          [&](std::size_t f) { return f == 0 || least(f - 1) <= least(f); });
+    return are;
+}
+
+} // namespace
+
 void order_by_voxels(std::size_t voxels, std::vector<Index>& voxel, PolygonMesh& mesh,
                      FacetKnowledge& known) {
     assert(mesh.properties.empty() && mesh.normals.empty() && mesh.origin.empty());
     const std::vector<std::uint8_t> used = used_vertices(mesh);
+    if (known.links && (known.links->rejected > 0 || known.links->split_vertices > 0)) known.links.reset();
+    if (are_in_order(voxel, used, mesh)) return;
     std::vector<Index> key =
         unwritten_vector<Index>(mesh.vertex_count()); // things are ordered by, ties as they are
     for_each_index(key.size(), chunks::light, [&](Index v) { key[v] = used[v] ? voxel[v] : no_index; });
@@ -106,7 +130,6 @@ void order_by_voxels(std::size_t voxels, std::vector<Index>& voxel, PolygonMesh&
     PolygonMesh result = rearranged(mesh, vertices, facets, number);
     voxel = gathered(voxel, vertices);
     known.hints.sides = rearranged(known.hints.sides, mesh, facets, result);
-    if (known.links && (known.links->rejected > 0 || known.links->split_vertices > 0)) known.links.reset();
     if (known.links) known.links = rearranged(*known.links, mesh, facets, result);
     if (known.cells) {
         assign_large(number, facets.size(), no_index);

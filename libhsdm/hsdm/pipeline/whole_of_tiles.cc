@@ -33,13 +33,6 @@ void note_intersections(const WholeInput& in, Occurrences left, Report& report) 
     warn(warning_of::intersections, left, in.cloud.frame(), report);
 }
 
-/// Refuses what was taken for granted of the whole and is not so.
-void check_whole(const WholeInput& in, const MethodInput& method, const PolygonMesh& mesh,
-                 const FacetLinks& links) {
-    if (in.options.holes == Holes::automatic && has_slits(method, in.survey.spacing, mesh, links))
-        refuse_in_tiles("a slit has to be closed (--holes keep would leave it)");
-}
-
 /// Distances of points, group by group. Returns the points that the mesh leaves out, and not because of their
 /// noise.
 Occurrences measure_error(const WholeInput& in, const PolygonMesh& facets, Report& report) {
@@ -94,7 +87,8 @@ public:
           intersections_(facets.known.intersections),
           report_(std::move(report)) {
         result_.mesh = std::move(facets.mesh);
-        result_.rows = in.cloud.attributes().of_vertices(), result_.attributes = std::move(facets.attributes);
+        result_.rows = facets.rows, result_.attributes = std::move(facets.attributes);
+        if (facets.known.links) links() = std::move(*facets.known.links), are_linked_ = true;
     }
 
     FlatReconstruction finish() {
@@ -103,8 +97,7 @@ public:
         in_.phases.run("whole", 0.55, seconds.facets, [&] {
             check_facets(mesh(), report_);
             note_intersections(in_, intersections_, report_);
-            links() = link_facets(mesh());
-            check_whole(in_, method_, mesh(), links());
+            if (!are_linked_) links() = link_facets(mesh());
             leave_out_unsound();
             check_facets(mesh(), report_);
         });
@@ -223,6 +216,7 @@ private:
     const MethodInput method_;
     FeatureHints hints_;
     Occurrences intersections_;
+    bool are_linked_ = false;
     Report report_;
     FlatReconstruction result_;
 };
@@ -251,13 +245,16 @@ Reconstruction finish_whole(const WholeInput& in, WholeFacets&& facets, Report&&
     in.phases.run("whole", 0.55, report.seconds.facets, [&] {
         check_facets(facets.mesh, report);
         report.rejected["intersections_left"] = facets.known.intersections.count;
-        facets.known.links = link_facets(facets.mesh);
-        check_whole(in, method, facets.mesh, *facets.known.links);
+        if (!facets.known.links) facets.known.links = link_facets(facets.mesh);
         const auto count = facets.mesh.vertex_count();
-        facets.mesh.properties = in.cloud.attributes().of_vertices().properties_of(facets.attributes);
+        std::vector<VertexProperty>& properties = facets.mesh.properties;
+        properties = facets.rows.properties_of(facets.attributes);
+        const auto add = [&](const char* name, std::vector<double> values) {
+            properties.push_back({name, VertexProperty::Type::uint8, std::move(values)});
+        };
+        add(level_property, std::vector<double>(count, static_cast<double>(level.depth)));
+        if (facets.rows.has_kinds()) add(completed_property, facets.rows.are_completed(facets.attributes));
         release(facets.attributes);
-        facets.mesh.properties.push_back({level_property, VertexProperty::Type::uint8,
-                                          std::vector<double>(count, static_cast<double>(level.depth))});
     });
     Reconstruction result;
     finish_mesh(method, std::move(facets.mesh), std::move(facets.known), std::move(report), result,

@@ -10,7 +10,8 @@ namespace hsdm {
 /// The facets of the whole, relative to the cube, and what pieces tell of them.
 struct WholeFacets {
     PolygonMesh mesh;
-    std::vector<char> attributes; ///< AttributeRows of the cloud, of its vertices
+    AttributeRows rows;           ///< of the cloud's vertices
+    std::vector<char> attributes; ///< these rows
     FacetKnowledge known;
     FacetCounts counts;
 };
@@ -34,7 +35,7 @@ struct WholeInput {
 /// On all ranks but the first, each time that this one measures the error.
 void assist_error(const WholeInput& in);
 
-/// What is left once there are facets: slits, what is unsound, the error, features. Throws Error if something
+/// What is left once there are facets: what is unsound, the error, features. Throws Error if something
 /// was taken for granted of the whole that is not so; Cancelled.
 Reconstruction finish_whole(const WholeInput& in, WholeFacets&& facets, Report&& report);
 /// Of these facets, what the next one has in memory at most without parking: some 165 bytes a vertex.

@@ -1,12 +1,13 @@
 #include "hsdm/io/write_by_ranks.hh"
 #include "hsdm/mesh/vertex_normals.hh"
+#include "hsdm/pipeline/extended_method.hh"
 #include "hsdm/pipeline/reconstruct_in_tiles.hh"
 
 namespace hsdm {
 namespace {
 
-/// Colours and scalars, level, class, normals and their count, in the order in which a Reconstruction's mesh
-/// has them.
+/// Colours and scalars, level, what is completed, class, normals and their count, in the order in which a
+/// Reconstruction's mesh has them.
 VertexRows rows_of(const FlatReconstruction& flat) {
     using Type = VertexProperty::Type;
     const bool classes = !flat.features.sharp.empty(), normals = !flat.features.normals.empty();
@@ -15,6 +16,7 @@ VertexRows rows_of(const FlatReconstruction& flat) {
     for (const AttributeRows::Column& column : flat.rows.columns())
         rows.columns.emplace_back(column.name, column.type);
     rows.columns.emplace_back(level_property, Type::uint8);
+    if (flat.rows.has_kinds()) rows.columns.emplace_back(completed_property, Type::uint8);
     if (classes) rows.columns.emplace_back(vertex_class_property, Type::uint8);
     for (std::size_t i = 0; normals && i < 9; ++i)
         rows.columns.emplace_back(vertex_normal_component(i), Type::float32);
@@ -24,9 +26,11 @@ VertexRows rows_of(const FlatReconstruction& flat) {
         FacetFan fan(flat.mesh, flat.links, flat.features);
         for (std::size_t v = begin; v < end; ++v) {
             Vec3& mean = means.emplace_back(0, 0, 0);
+            const char* const row = flat.attributes.data() + v * flat.rows.bytes();
             for (std::size_t k = 0; k < flat.rows.columns().size(); ++k)
-                values.push_back(flat.rows.value(flat.attributes.data() + v * flat.rows.bytes(), k));
+                values.push_back(flat.rows.value(row, k));
             values.push_back(flat.depth);
+            if (flat.rows.has_kinds()) values.push_back(flat.rows.kind(row) == PointKind::completed);
             if (!classes) continue;
             fan.gather(static_cast<Index>(v));
             values.push_back(static_cast<double>(fan.kind()));
