@@ -66,7 +66,7 @@ inline constexpr std::size_t fewest_of_part = 216;
 /// facets: looked at for each voxel of a block, in all; after that no more rings are looked for there.
 /// Why: bounds the time where normals are at random; two rounds of all vertices, parts of narrow slots need
 /// one.
-inline constexpr std::ptrdiff_t most_work = 128;
+inline constexpr std::ptrdiff_t most_work = 1024;
 
 /// levels: from a voxel to the block that shares its work; blocks do not know of each other.
 /// Why: some thousand vertices, of which single ones that take long do not take it from all; a part of a
