@@ -12,6 +12,7 @@
 #include "hsdm/contour/spikes.hh"
 #include "hsdm/contour/trim_crossings.hh"
 #include "hsdm/contour/webs.hh"
+#include "hsdm/contour/wide_holes.hh"
 #include "hsdm/core/chunks.hh"
 #include "hsdm/core/constants.hh"
 #include "hsdm/core/large_vector.hh"
@@ -426,6 +427,7 @@ DualContour dual_contour(const Octree& octree, const OctreeLevel& level, const N
         holes.max_diameter *= h;
         if (!result.links) result.links = link_facets(result.mesh);
         result.holes = fill_holes(result.mesh, *result.links, holes);
+        result.wide_holes = wide_holes(octree, level, result.voxel, result.mesh, result.holes);
         changed(result.holes.closed);
     }
     result.doublets = changed(merge_doublets(

@@ -59,6 +59,7 @@ struct DualContour {
     std::size_t doublets = 0;     ///< pairs of facets round one vertex merged into one facet
     Occurrences splinters;        ///< facets of splinters, removed
     FillHolesCounts holes;
+    Occurrences wide_holes; ///< of those that were closed, wider than the sampling leaves
     UntangleCounts intersections;
     std::optional<FacetCells> cells; ///< the mesh's facets by voxel; empty if untangling moved vertices
     std::optional<FacetLinks> links; ///< the mesh's; empty if facets changed after they were found

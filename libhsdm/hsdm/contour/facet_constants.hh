@@ -108,6 +108,11 @@ inline constexpr int most_edges = 24;
 /// Why: as wide as a loop of 24 edges can be round.
 HSDM_TUNED double widest = 6;
 
+/// points: that should lie in the free disc about the middle of a closed hole that is more than a gap.
+/// Why: chance leaves none once in 10^8 times, and seldomer, as the density of the voxels around is taken and
+/// borders cut some of these.
+inline constexpr double least_missing = 20;
+
 } // namespace hsdm::holes
 
 // sheet_features.hh

@@ -214,13 +214,14 @@ FillHolesCounts fill_holes(PolygonMesh& mesh, const FacetLinks& links, const Fil
             pieces = triangles_around(add_middle(mesh, loop), loop);
             ++counts.vertices;
         }
-        for (const auto& piece : pieces) {
-            mesh.add_facet(piece);
-            edges.add(piece);
-        }
         if (pieces.empty()) {
             ++counts.refused;
             continue;
+        }
+        counts.first.push_back(static_cast<Index>(mesh.facet_count()));
+        for (const auto& piece : pieces) {
+            mesh.add_facet(piece);
+            edges.add(piece);
         }
         counts.facets += pieces.size();
         ++counts.closed;

@@ -114,12 +114,23 @@ bool turn_solid_outward(PolygonMesh& mesh) {
     return true;
 }
 
+/// A hole may be of the part: where the surface has borders anyway, nothing says that it is none.
+void warn_of_wide_holes(const MethodInput& in, const DualContour& facets, Report& report) {
+    if (closes_all(in.options.holes) || facets.wide_holes.count == 0
+        || measure_connectivity(facets.mesh).closed())
+        return;
+    Occurrences wide = facets.wide_holes;
+    wide.first += in.octree.origin;
+    warn(warning_of::wide_holes, wide, in.frame, report);
+}
+
 /// What is known of facets once they are made, and what their vertices inherit from the points; takes the
 /// mesh, and the sets, to free them. (The adaptive grid, which makes another one of it, has an order of its
 /// own.)
 PolygonMesh finished(const MethodInput& in, NormalSets&& sets, DualContour& facets, Report& report,
                      FacetKnowledge& known) {
     note_counts(facets, report);
+    warn_of_wide_holes(in, facets, report);
     note_dropped("facets of splinters", facets.splinters, in, report);
     const bool turned = turn_solid_outward(facets.mesh);
     if (turned) facets.links.reset();

@@ -14,6 +14,8 @@ inline constexpr const char* crowded_sheets = "voxels with walls or gaps too nar
 inline constexpr const char* sides = "pairs of points side by side whose normals face opposite ways";
 inline constexpr const char* too_small = "voxels too small for the points there";
 inline constexpr const char* beyond = "points farther from the mesh than max_error";
+inline constexpr const char* wide_holes =
+    "holes closed where points should lie, in a surface that stays open";
 inline constexpr const char* open_loops = "boundary loops that stay open though all were to be closed";
 } // namespace warning_of
 
