@@ -263,9 +263,9 @@ inline constexpr double clear_views = 0.5;
 inline constexpr double least_contradicted = 0.0025;
 
 /// share: of the points whose sides are in question, that must face the sky, net of those turned away.
-/// Why: by trial; walls that face each other show it their rims alone, a hundredth; of two layers of a
-/// surface each is outermost somewhere, mostly over a quarter of it or more.
-inline constexpr double least_seeing = 0.05;
+/// Why: twice what walls that face each other show it at their rims, a hundredth; of two layers of a surface
+/// each is outermost somewhere, if only where a shift leaves an edge uncovered, a thirtieth.
+inline constexpr double least_seeing = 0.02;
 
 } // namespace hsdm::turning
 
