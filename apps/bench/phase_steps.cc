@@ -180,7 +180,7 @@ void copy_mesh(Work& w) {
 void find_handles(Work& w) {
     std::optional<FacetLinks> links; // found here, as for what comes after
     w.checksum +=
-        static_cast<double>(cut_handles(w.octree, w.level, w.sets, w.contour.voxel, w.mended, links));
+        static_cast<double>(cut_handles(w.octree, w.level, w.sets, w.contour.voxel, w.mended, links).cut);
 }
 void find_holes(Work& w) {
     w.checksum += static_cast<double>(fill_holes(w.mended, {.max_edges = holes::most_edges}).closed);

@@ -2,11 +2,11 @@
 #include "cli/run.hh"
 #include "support/sample.hh"
 #include "support/scanner.hh"
-#include "support/uneven.hh"
 
 #include <catch2/catch.hpp>
 
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <sstream>
@@ -210,9 +210,12 @@ TEST_CASE("what is told of files that are not read again is told all the same", 
 TEST_CASE("a cloud that tiles refuse leaves nothing to go on with", "[cli][tiles]") {
     const Folder folder;
     std::filesystem::create_directory(folder / "scratch");
-    const PointCloud even = support::sample(support::torus(1, 0.3), {.points = 200000});
-    support::write_ply(folder / "scan.ply", support::thinned_on_one_side(even, Vec3(1, 0, 0), 0.3, 30));
-    const CommandResult result = run(folder, "reconstruct scan.ply --memory 70M --scratch scratch "
+    constexpr std::size_t points = 8000;
+    const double spacing = std::sqrt(12.0 / points); // as wide is the noise, many voxels
+    support::write_ply(
+        folder / "scan.ply",
+        support::sample(support::sphere(1), {.points = points, .normals = false, .position_noise = spacing}));
+    const CommandResult result = run(folder, "reconstruct scan.ply --depth 12 --memory 80M --scratch scratch "
                                              "--resume -o part.ply");
     CHECK(result.status == 1);
     CHECK(result.err.find("this is not done in tiles") != std::string::npos);

@@ -135,13 +135,13 @@ TEST_CASE("a bridge through the air is taken away, and a tunnel that no points s
         REQUIRE(measure_topology(mesh).euler == 2);
         REQUIRE(measure_topology(mesh).components == 1);
         std::optional<FacetLinks> links; // of the mesh before, which are not to be taken for those after
-        CHECK(cut_handles(stages.octree, stages.level, stages.sets, part.voxel, mesh, links) == 1);
+        CHECK(cut_handles(stages.octree, stages.level, stages.sets, part.voxel, mesh, links).cut == 1);
         const Topology topology = measure_topology(mesh);
         CHECK(topology.euler == 4);
         CHECK(topology.components == 2);
         CHECK(topology.closed());
         CHECK(faults(mesh) == (turned_normals ? "closed but not outward; " : ""));
-        CHECK(cut_handles(stages.octree, stages.level, stages.sets, part.voxel, mesh, links) == 0);
+        CHECK(cut_handles(stages.octree, stages.level, stages.sets, part.voxel, mesh, links).cut == 0);
         if (links) CHECK(links->twin == link_facets(mesh).twin);
     }
 }
@@ -238,10 +238,10 @@ TEST_CASE("measured points speak for a bridge, completed ones do not", "[contour
     }
     REQUIRE(beside.size() > 20);
     std::optional<FacetLinks> links;
-    CHECK(cut_handles(octree, stages.level, stages.sets, part.voxel, mesh, links) == 0);
+    CHECK(cut_handles(octree, stages.level, stages.sets, part.voxel, mesh, links).cut == 0);
     mesh = bridged;
     for (std::size_t i : beside) octree.source[i] = no_index;
-    CHECK(cut_handles(octree, stages.level, stages.sets, part.voxel, mesh, links) == 1);
+    CHECK(cut_handles(octree, stages.level, stages.sets, part.voxel, mesh, links).cut == 1);
     if (links) CHECK(links->twin == link_facets(mesh).twin);
 }
 
@@ -270,7 +270,7 @@ TEST_CASE("a ring narrower than points are apart is cut, in full view of them", 
         speaking.normals[i] = unit(area_vector(mesh, facet));
     }
     std::optional<FacetLinks> links;
-    CHECK(cut_handles(speaking, stages.level, stages.sets, boxes.part.voxel, mesh, links) == 1);
+    CHECK(cut_handles(speaking, stages.level, stages.sets, boxes.part.voxel, mesh, links).cut == 1);
     CHECK(measure_topology(mesh).euler == 4);
     CHECK(faults(mesh) == "");
 }

@@ -47,13 +47,15 @@ PointCloud uneven_bowl(double top, bool normals) {
     return cloud;
 }
 
-/// A box without the points of a slit in its top, of two voxels of 0.05 and more across.
+constexpr double slit_voxel = 0.08;
+
+/// A box without the points of a slit in its top, of three voxels across.
 PointCloud slit_box(bool inward) {
-    const PointCloud all = support::sample(support::box({2, 1.6, 1.2}), {.points = 20000});
+    const PointCloud all = support::sample(support::box({2, 1.6, 1.2}), {.points = 18000});
     PointCloud cloud;
     for (std::size_t i = 0; i < all.size(); ++i) {
         const Vec3& p = all.positions[i];
-        if (all.normals[i][2] > 0.9 && std::abs(p[0]) < 0.5 && std::abs(p[1] - 0.2) < 0.07) continue;
+        if (all.normals[i][2] > 0.9 && std::abs(p[0]) < 0.9 && std::abs(p[1] - 0.2) < 0.13) continue;
         cloud.positions.push_back(p);
         cloud.normals.push_back(inward ? -all.normals[i] : all.normals[i]);
     }
@@ -87,9 +89,9 @@ void check_same_added(const Reconstruction& whole, const Reconstruction& tiles) 
 Reconstruction check_added_everywhere(const PointCloud& cloud, const ReconstructOptions& options) {
     Reconstruction whole = reconstruct(cloud, options);
     TileReport how;
-    check_same_added(whole, reconstruct_in_tiles(view_of(cloud), options, added_tiles(3000), &how));
+    check_same_added(whole, reconstruct_in_tiles(view_of(cloud), options, added_tiles(6000), &how));
     CHECK(how.tiles > 1);
-    check_same_added(whole, support::reconstruct_by_ranks(3, cloud, options, added_tiles(3000)));
+    check_same_added(whole, support::reconstruct_by_ranks(3, cloud, options, added_tiles(6000)));
     return whole;
 }
 
@@ -113,7 +115,7 @@ TEST_CASE("coarser voxels help tiles where points are sparse, as in one piece", 
 
 TEST_CASE("slits are closed in tiles as in one piece", "[pipeline][tiles][slow]") {
     ReconstructOptions options{.threads = 2};
-    options.voxel_size = 0.05;
+    options.voxel_size = slit_voxel;
     const bool inward = GENERATE(false, true);
     const Reconstruction whole = check_added_everywhere(slit_box(inward), options);
     CHECK(whole.report.mesh.closed);
@@ -124,14 +126,28 @@ TEST_CASE("slits are closed in tiles as in one piece", "[pipeline][tiles][slow]"
     CHECK(std::ranges::count(completed_marks(mesh).values, 1) > 10);
 }
 
+TEST_CASE("points are added in tiles that have nothing beside them", "[pipeline][tiles][slow]") {
+    PointCloud cloud = slit_box(false);
+    cloud.colors.clear(), cloud.scalars.clear();
+    ReconstructOptions options{.threads = 2};
+    options.voxel_size = slit_voxel;
+    const Reconstruction whole = reconstruct(cloud, options);
+    CHECK(whole.report.mesh.closed);
+    check_same_added(whole, reconstruct_in_tiles(view_of(cloud), options, added_tiles(9000)));
+    options.holes = Holes::keep;
+    const Reconstruction open = reconstruct(cloud, options);
+    CHECK(open.report.mesh.boundary_loops == 1);
+    check_same_added(open, reconstruct_in_tiles(view_of(cloud), options, added_tiles(9000)));
+}
+
 TEST_CASE("points that were added are told in files of flat arrays", "[pipeline][tiles]") {
     const PointCloud cloud = slit_box(false);
     ReconstructOptions options{.threads = 2};
-    options.voxel_size = 0.05;
+    options.voxel_size = slit_voxel;
     const Reconstruction whole = reconstruct(cloud, options);
     const PolygonMesh polygons = to_polygons(whole.mesh);
     const FlatReconstruction flat = reconstruct_flat_in_tiles(
-        [&](const auto& visit) { visit(view_of(cloud)); }, options, added_tiles(8000));
+        [&](const auto& visit) { visit(view_of(cloud)); }, options, added_tiles(9000));
     const std::string one =
         bytes_of_file([&](const std::string& path) { write_mesh(path, polygons, MeshFormat::ply, {}); });
     CHECK(one.find("hsdm_completed") != std::string::npos);
@@ -139,17 +155,17 @@ TEST_CASE("points that were added are told in files of flat arrays", "[pipeline]
           == bytes_of_file([&](const std::string& path) { write_flat(path, flat, MeshFormat::ply, false); }));
 }
 
-TEST_CASE("a run that was ended goes on with tiles of points that were added", "[pipeline][tiles]") {
+TEST_CASE("a run that was ended goes on with tiles of points that were added", "[pipeline][tiles][slow]") {
     const PointCloud cloud = slit_box(false);
     ReconstructOptions options{.threads = 2};
-    options.voxel_size = 0.05;
+    options.voxel_size = slit_voxel;
     const Reconstruction whole = reconstruct(cloud, options);
     const support::Folder folder;
     const auto run = [&] {
         KeptScratch kept(folder / ".", 0, {{"input", "a box"}});
         TileReport how;
         check_same_added(whole,
-                         reconstruct_in_tiles(view_of(cloud), options, added_tiles(8000, &kept), &how));
+                         reconstruct_in_tiles(view_of(cloud), options, added_tiles(9000, &kept), &how));
         return how;
     };
     run();

@@ -147,6 +147,33 @@ TEST_CASE("noise that is far wider than the voxels asked for is refused in tiles
     CHECK_THROWS_AS(reconstruct_in_tiles(view_of(cloud), {.depth = 12}, noisy_tiles()), RefusedInTiles);
 }
 
+TEST_CASE("voxels of one size are done in tiles where points are far sparser in some places",
+          "[pipeline][tiles]") {
+    const PointCloud cloud = support::thinned_on_one_side(
+        support::sample(support::sphere(1), {.points = 20000}), Vec3(1, 0, 0), 0.3, 30);
+    ReconstructOptions options{.holes = Holes::keep};
+    options.voxel_size = 0.1;
+    check_noisy_pieces(reconstruct(cloud, options),
+                       reconstruct_in_tiles(view_of(cloud), options, noisy_tiles()));
+}
+
+TEST_CASE("where facets are garbage tiles look for as many handles as one piece does",
+          "[pipeline][tiles][slow]") {
+    PointCloud cloud = support::sample(support::sphere(1), {.points = 6000});
+    support::Random random(3);
+    for (std::size_t i = 0; i < cloud.size(); ++i)
+        if (cloud.positions[i][0] > 0.8)
+            cloud.normals[i] =
+                Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)).normalized();
+    const ReconstructOptions options{.depth = 4, .normals = NormalSource::given};
+    const Reconstruction whole = reconstruct(cloud, options);
+    TileReport how;
+    const Reconstruction tiles = reconstruct_in_tiles(
+        view_of(cloud), options, {.memory = std::size_t{1} << 30, .most_points = 2500}, &how);
+    CHECK(how.tiles > 1);
+    CHECK(support::difference_of_bits(to_polygons(whole.mesh), to_polygons(tiles.mesh)) == "");
+}
+
 TEST_CASE("parts of a cloud tell where coarser voxels help as the whole does", "[pipeline][tiles]") {
     const PointCloud cloud = support::thinned_on_one_side(
         support::sample(support::sphere(1), {.points = 20000}), Vec3(1, 0, 0), 0.3, 30);

@@ -420,14 +420,17 @@ DualContour dual_contour(const Octree& octree, const OctreeLevel& level, const N
         if (count > 0) result.links.reset(), edited = true;
         return count;
     };
-    result.handles_cut = cut_handles(octree, level, sets, result.voxel, result.mesh, result.links);
+    const HandleCounts handles =
+        cut_handles(octree, level, sets, result.voxel, result.mesh, result.links, options.part);
+    result.handles_cut = handles.cut, result.is_crowded = handles.is_crowded;
     edited |= result.handles_cut > 0;
     if (options.fill) {
         FillHolesOptions holes = options.holes;
         holes.max_diameter *= h;
         if (!result.links) result.links = link_facets(result.mesh);
         result.holes = fill_holes(result.mesh, *result.links, holes);
-        result.wide_holes = wide_holes(octree, level, result.voxel, result.mesh, result.holes);
+        if (!options.part.is_part())
+            result.wide_holes = wide_holes(octree, level, result.voxel, result.mesh, result.holes);
         changed(result.holes.closed);
     }
     result.doublets = changed(merge_doublets(

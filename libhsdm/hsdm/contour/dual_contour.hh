@@ -59,13 +59,14 @@ struct DualContour {
     std::size_t doublets = 0;     ///< pairs of facets round one vertex merged into one facet
     Occurrences splinters;        ///< facets of splinters, removed
     FillHolesCounts holes;
-    Occurrences wide_holes; ///< of those that were closed, wider than the sampling leaves
+    Occurrences wide_holes; ///< of those that were closed, wider than the sampling leaves; none of a part
     UntangleCounts intersections;
     std::optional<FacetCells> cells; ///< the mesh's facets by voxel; empty if untangling moved vertices
     std::optional<FacetLinks> links; ///< the mesh's; empty if facets changed after they were found
     ManifoldCounts manifold;         ///< what make_manifold still had to mend at the end
     std::array<PartComponents, 2> components;   ///< with DualContourOptions::part
     TangleCounts tangles;                       ///< in the place of `intersections`
+    bool is_crowded = false;                    ///< as in HandleCounts
     double misfit_placed = 0, misfit_moved = 0; ///< with RelaxOptions::part_of_whole: see there
 };
 

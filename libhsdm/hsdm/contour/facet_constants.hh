@@ -63,15 +63,14 @@ inline constexpr std::size_t far = 4096;
 /// Why: those of a cube of six voxels; what is smaller may be a knob or a spike of the part that it is on.
 inline constexpr std::size_t fewest_of_part = 216;
 
-/// facets: looked at for each voxel of a block, in all; after that no more rings are looked for there.
-/// Why: bounds the time where normals are at random; two rounds of all vertices, parts of narrow slots need
-/// one.
-inline constexpr std::ptrdiff_t most_work = 1024;
-
 /// levels: from a voxel to the block that shares its work; blocks do not know of each other.
-/// Why: some thousand vertices, of which single ones that take long do not take it from all; a part of a
-/// cloud, which knows the blocks around it, does what is done in the whole.
-inline constexpr int block_levels = 5;
+/// Why: as tiles consist of whole ones (cell_depth_of), each knows all of those that it owns.
+inline constexpr int block_levels = 3;
+
+/// facets: looked at in a block, in all; after that no more rings are looked for there.
+/// Why: bounds the time where normals are at random; what 16 vertices take that look behind all rings beside
+/// theirs. Two rounds of all vertices take a tenth.
+inline constexpr std::size_t most_work = std::size_t{1} << 17;
 
 } // namespace hsdm::handles
 

@@ -210,40 +210,42 @@ private:
     std::vector<Index> ring_, beside_;
 };
 
-/// What may still be looked at in each block of voxels, whatever is looked at elsewhere.
-class BlockBudget {
+/// What was looked at in each block of voxels.
+class WorkOfBlocks {
 public:
-    explicit BlockBudget(const OctreeLevel& level) : block_(large_vector<Index>(level.size())) {
+    explicit WorkOfBlocks(const OctreeLevel& level) : block_(large_vector<Index>(level.size())) {
         constexpr int to_block = 3 * handles::block_levels;
         for_each_in_order(level.size(), [&](std::size_t v) {
-            if (v == 0 || level.codes[v] >> to_block != level.codes[v - 1] >> to_block) left_.push_back(0);
-            block_[v] = static_cast<Index>(left_.size() - 1);
-            left_.back() += handles::most_work;
+            if (v == 0 || level.codes[v] >> to_block != level.codes[v - 1] >> to_block) work_.push_back(0);
+            block_[v] = static_cast<Index>(work_.size() - 1);
         });
     }
 
-    bool is_spent(Index voxel) const { return left_[block_[voxel]] < 0; }
-    void spend(Index voxel, std::size_t facets) {
-        left_[block_[voxel]] -= static_cast<std::ptrdiff_t>(facets);
+    std::size_t& of(Index voxel) { return work_[block_[voxel]]; }
+    /// Did a block with one of these voxels take more than half of what it may?
+    bool is_crowded(const PartVoxels& voxels) const {
+        for (Index v = 0; v < block_.size(); ++v)
+            if (2 * work_[block_[v]] > handles::most_work && voxels.owns(v)) return true;
+        return false;
     }
 
 private:
-    std::vector<Index> block_;         // per voxel
-    std::vector<std::ptrdiff_t> left_; // per block, facets; below 0: more was looked at
+    std::vector<Index> block_;      // per voxel
+    std::vector<std::size_t> work_; // per block, facets
 };
 
 /// One round: all rings that can be cut without touching each other.
 class Round {
 public:
     Round(const Octree& octree, const OctreeLevel& level, const NormalSets& sets,
-          std::span<const Index> voxel, BlockBudget& budget, PolygonMesh& mesh,
+          std::span<const Index> voxel, WorkOfBlocks& done, PolygonMesh& mesh,
           std::optional<FacetLinks>& links)
         : mesh_(mesh),
           known_links_(links),
           sets_(sets),
           voxel_(voxel),
           witnesses_(octree, level, voxel, mesh),
-          budget_(budget) {
+          done_(done) {
         const double voxel_size = level.voxel_size;
         has_wall_ = voxels_of_walls(sets, voxel, mesh);
         assign_large(contradicted_, mesh.facet_count(), 0);
@@ -261,11 +263,11 @@ public:
         assign_large(touched_, mesh_.vertex_count(), 0);
         assign_large(seen_, mesh_.facet_count(), 0);
         for_each_in_order(roots.size(), [&](std::size_t i) {
-            if (budget_.is_spent(voxel_at(roots[i]))) return;
+            if (done_.of(voxel_at(roots[i])) > handles::most_work) return;
             Interruption::poll();
             work_ = 0;
             look_at(roots[i], vicinity);
-            budget_.spend(voxel_at(roots[i]), work_);
+            done_.of(voxel_at(roots[i])) += work_;
         });
         for (const Ring& ring : rings_) open(ring);
         for (const auto& [v, place] : moves_) mesh_.positions[v] = place;
@@ -501,7 +503,7 @@ private:
     const NormalSets& sets_;
     std::span<const Index> voxel_;
     Witnesses witnesses_;
-    BlockBudget& budget_;
+    WorkOfBlocks& done_;
     std::size_t work_ = 0; // facets looked at for a vertex
     FacetLinks links_;
     std::vector<std::uint8_t> has_wall_;     // per voxel: passed by a wall or gap
@@ -515,16 +517,18 @@ private:
 
 } // namespace
 
-std::size_t cut_handles(const Octree& octree, const OctreeLevel& level, const NormalSets& sets,
-                        std::span<const Index> voxel, PolygonMesh& mesh, std::optional<FacetLinks>& links) {
-    std::size_t cut = 0;
-    BlockBudget budget(level);
+HandleCounts cut_handles(const Octree& octree, const OctreeLevel& level, const NormalSets& sets,
+                         std::span<const Index> voxel, PolygonMesh& mesh, std::optional<FacetLinks>& links,
+                         const PartVoxels& part) {
+    HandleCounts counts;
+    WorkOfBlocks done(level);
     for (int round = 0; round < enough_rounds; ++round) {
-        const std::size_t rings = Round(octree, level, sets, voxel, budget, mesh, links).cut();
-        cut += rings;
+        const std::size_t rings = Round(octree, level, sets, voxel, done, mesh, links).cut();
+        counts.cut += rings;
         if (rings == 0) break;
     }
-    return cut;
+    counts.is_crowded = part.is_part() && done.is_crowded(part);
+    return counts;
 }
 
 } // namespace hsdm

@@ -2,6 +2,7 @@
 // Handles that no point speaks for: what the links of a grid face left of a web over a gap or a tunnel
 // through a wall, by the mesh alone.
 
+#include "hsdm/contour/mesh_of_part.hh"
 #include "hsdm/contour/normal_sets.hh"
 #include "hsdm/mesh/facet_links.hh"
 
@@ -9,17 +10,25 @@
 
 namespace hsdm {
 
+struct HandleCounts {
+    std::size_t cut = 0; ///< rings
+    /// Of a part: a block of voxels that it owns took more than half of what it may, so that what lies around
+    /// must be known farther off for it to take what it takes in the whole.
+    bool is_crowded = false;
+};
+
 /// Cuts the mesh along short rings of edges that do not bound a small part of their own, and closes both
 /// sides, where points pass across the ring and are missing along it, or none speak for a quarter of the
 /// facets beside it, nor of those beside the rings next to it on average, or its vertices are nearer to its
 /// axis than points to each other (Witnesses). A bridge through the air is taken away like that, and a tunnel
 /// filled. Each cut raises the Euler characteristic by two, so it comes to an end. A 2-manifold remains one;
-/// vertices are copied with their origins, `voxel` is per origin. Returns how many rings were cut. O(facets):
+/// vertices are copied with their origins, `voxel` is per origin. O(facets):
 /// rings are looked for near facets that no set of their vertices' voxels agrees with, that face aside from
 /// one where a wall or gap passes, and where two short edges of a facet meet, and no more in a block of
 /// voxels once that has taken so much work there. Serial but for the first look at all facets. `links` are
 /// the mesh's if they are known; they are found if needed, and none are left once the mesh has changed.
-std::size_t cut_handles(const Octree& octree, const OctreeLevel& level, const NormalSets& sets,
-                        std::span<const Index> voxel, PolygonMesh& mesh, std::optional<FacetLinks>& links);
+HandleCounts cut_handles(const Octree& octree, const OctreeLevel& level, const NormalSets& sets,
+                         std::span<const Index> voxel, PolygonMesh& mesh, std::optional<FacetLinks>& links,
+                         const PartVoxels& part = {});
 
 } // namespace hsdm

@@ -263,17 +263,19 @@ void complete_slits(Completing how, Draft& draft) {
     const DualContourOptions options = options_for(how.measured, how.base.input.spacing);
     for (int round = 1; round <= repeats::twice; ++round, how.done += how.share) {
         const MethodInput in = draft.input(how.measured);
+        FacetFaults before{draft.facets.intersections.after, 0};
         const SlitCompletion completion =
             in.phases.run("completion", how.done, draft.report.seconds.facets, [&] {
                 const BoundaryLoops loops = loops_of(in, draft.facets);
+                before.border = loops.vertices.size();
                 return slit_completion(in, how.base.input.spacing, draft.facets.mesh, loops);
             });
         if (completion.loops.size() == 0) return;
-        draft.facets.cells.reset(); // frees what is not needed any more
+        draft.facets.cells.reset(), draft.facets.links.reset(); // frees what is not needed any more
         Draft next = how.draft(in, completion.points, draft.report, 0, options);
-        if (!completion.is_better(next.facets.intersections.after,
-                                  boundary_loops(next.facets.mesh).vertices.size(),
-                                  draft.facets.intersections.after)) {
+        const FacetFaults after{next.facets.intersections.after,
+                                boundary_loops(next.facets.mesh).vertices.size()};
+        if (!are_better(after, before)) {
             draft.report.seconds = next.report.seconds;
             return;
         }
@@ -476,6 +478,7 @@ PartFacets facets_of_part(const MethodInput& in, const PartOfLevel& part) {
     for (const NormalSet& set : sets.sets) result.counts.sets += is_own(set.voxel);
     result.counts.misfit_placed = facets.misfit_placed, result.counts.misfit_moved = facets.misfit_moved;
     result.counts.tangles = facets.tangles;
+    result.counts.is_crowded = facets.is_crowded;
     result.components = std::move(facets.components);
     result.mesh = std::move(facets.mesh);
     result.voxel = std::move(facets.voxel);
@@ -489,7 +492,7 @@ SlitCompletion slit_completion(const MethodInput& in, double spacing, const Poly
     Slits slits = find_slits(facets, loops, h * options_for(in, spacing).holes.max_diameter);
     // Where more than slits is open all is completed at once: what closes one loop may meet another's.
     if (in.options.holes == Holes::complete && slits.loops.size() < loops.size()) return {};
-    SlitCompletion result{{}, points_across(slits, h), loops.vertices.size()};
+    SlitCompletion result{{}, points_across(slits, h)};
     result.loops = std::move(slits.loops);
     return result;
 }

@@ -35,6 +35,7 @@ struct FacetCounts {
     std::size_t middle = 0, tilted = 0;         ///< as in SheetFeatures, of edges of own facets
     double misfit_placed = 0, misfit_moved = 0; ///< as in DualContour, of own voxels
     TangleCounts tangles;                       ///< as in DualContour
+    bool is_crowded = false;                    ///< the same, of one part
 
     void operator+=(const FacetCounts& other);
 };
@@ -56,13 +57,17 @@ PartFacets facets_of_part(const MethodInput& input, const PartOfLevel& part);
 struct SlitCompletion {
     BoundaryLoops loops;    ///< none: there are no slits
     CompletedPoints points; ///< relative to the octree's origin
-    std::size_t border = 0; ///< edges of all loops of the facets
-
-    /// Are facets of which so many meet, with that much border, no worse than those of which `meeting` met?
-    bool is_better(std::size_t meeting_now, std::size_t border_now, std::size_t meeting) const {
-        return meeting_now <= meeting && border_now < border;
-    }
 };
+
+/// How far facets are from what they should be.
+struct FacetFaults {
+    std::size_t meeting; ///< pairs
+    std::size_t border;  ///< edges of their loops
+};
+/// Are facets with slits closed worth it: no worse, and less open?
+inline bool are_better(const FacetFaults& closed, const FacetFaults& before) {
+    return closed.meeting <= before.meeting && closed.border < before.border;
+}
 
 /// Of facets in the order of voxels, as facets_of_part() has them, and their loops.
 SlitCompletion slit_completion(const MethodInput& input, double spacing, const PolygonMesh& facets,

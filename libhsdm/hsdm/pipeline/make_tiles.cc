@@ -42,6 +42,7 @@ public:
             }
             due = disagreeing_tiles(
                 pieces, ranges_, [&](std::size_t k) { return owner(k); }, ranks_);
+            add_crowded(pieces, ghost, due);
             for (std::size_t k = 0; k < ranges_.size(); ++k)
                 if (due[k]) ghost[k] *= 2, ++how_.widened;
             if (std::ranges::count(due, 1) == 0) due = due_by_sums(pieces);
@@ -53,6 +54,17 @@ public:
 private:
     int owner(std::size_t tile) const { return cloud_.owner_of(ranges_[tile]); }
     bool is_own(std::size_t tile) const { return owner(tile) == ranks_.rank(); }
+
+    /// Tiles that may have been cut short in the search for handles, as long as they do not know what lies as
+    /// far around as the longest of these searches look.
+    void add_crowded(const std::vector<Piece>& pieces, const std::vector<int>& ghost,
+                     std::vector<std::uint8_t>& due) const {
+        constexpr int enough = 128;
+        std::vector<std::uint8_t> crowded(pieces.size(), 0);
+        for (std::size_t k = 0; k < pieces.size(); ++k)
+            crowded[k] = due[k] || (is_own(k) && pieces[k].counts.is_crowded && ghost[k] < enough);
+        due = ranks_.any_of_each(crowded);
+    }
 
     /// Those of this rank. All ranks know of all how wide they are.
     void make_due(const std::vector<std::uint8_t>& due, const std::vector<int>& ghost,
@@ -91,6 +103,7 @@ private:
             hash.add(std::uint64_t{is});
         for (const std::size_t count : known_.largest) hash.add(std::uint64_t{count});
         hash.add(std::uint64_t{in_.survey.sums.points()});
+        hash.add(std::uint64_t{cloud_.attributes().bytes()});
         hash.add(cloud_.cube_extent());
         for (const double x : cloud_.origin()) hash.add(x);
         return hash.value() | std::uint64_t{1} << 63; // no pass

@@ -46,8 +46,8 @@ ScratchCloud ScratchCloud::with_points(const ScratchCloud& added, PointKind kind
     return next;
 }
 
-/// Of a cloud whose rows have kinds already these stay. Places and normals are rounded as complete_cloud()
-/// rounds them.
+/// Of a cloud whose rows have kinds already these stay; added points are of no scanner. Places and normals
+/// are rounded as complete_cloud() rounds them.
 void ScratchCloud::move_points(const ScratchCloud& from, PointKind kind, std::size_t most,
                                const PutRow& put_row) const {
     CellAttributes attributes(from);

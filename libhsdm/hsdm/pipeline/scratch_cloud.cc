@@ -223,6 +223,9 @@ void ScratchCloud::count_cells() {
     Index number = 0;
     for (const ScratchPoints::Cell& cell : cells_) {
         first_of_cell_.push_back(number);
+        if (cell.points >= between_points - number)
+            throw Error(
+                "fewer than 2^32 - 2 points can be told apart, those added where they are sparse too");
         number += static_cast<Index>(cell.points);
     }
 }
@@ -381,6 +384,7 @@ void ScratchCloud::read_near(const VoxelRange& range, int ghost, CellRows& part)
         if (at != voxel) voxel = at, is_near = range.is_near(morton_decode(voxel), ghost);
         if (is_near) part.rows.push_back(rows[i]), part.places.push_back(static_cast<Index>(i));
     }
+    part.rows.shrink_to_fit(), part.places.shrink_to_fit();
 }
 
 Octree ScratchCloud::octree_around(const VoxelRange& range, int ghost) const {

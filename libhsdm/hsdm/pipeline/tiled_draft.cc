@@ -1,12 +1,13 @@
 #include "hsdm/pipeline/tiled_draft.hh"
 
 #include "hsdm/core/constants.hh"
-#include "hsdm/core/large_vector.hh"
 #include "hsdm/io/parked_arrays.hh"
 #include "hsdm/pipeline/attributes.hh"
 #include "hsdm/pipeline/cloud_sparse_areas.hh"
+#include "hsdm/pipeline/extended_method.hh"
 
 #include <numeric>
+#include <utility>
 
 namespace hsdm {
 namespace {
@@ -75,8 +76,11 @@ TiledDraft completed_draft(const DraftsInput& in, const ScratchCloud& cloud, con
     return draft_of(in, cloud.with_points(added, PointKind::completed, cloud.depth(), in.passes.most_points));
 }
 
-std::size_t border_of(const WholeFacets& facets) {
-    return boundary_loops(facets.mesh).vertices.size();
+/// On the first rank.
+FacetFaults faults_of(WholeFacets& facets) {
+    std::optional<FacetLinks>& links = facets.known.links;
+    if (!links) links = link_facets(facets.mesh);
+    return {facets.known.intersections.count, boundary_loops(facets.mesh, *links).vertices.size()};
 }
 
 /// As the one of extended_method(). The facets before wait on scratch meanwhile.
@@ -91,15 +95,14 @@ void complete_slits(const DraftsInput& in, TiledDraft& draft, Report& report) {
         TiledDraft next = completed_draft(in, cloud, slits.points);
         std::swap(next, draft);
         WholeFacets& before = next.facets;
+        FacetFaults faults{};
+        if (ranks.is_first()) faults = faults_of(before);
         before.known.links.reset();
         ParkedArrays waiting(&in.parking);
         waiting.park(before.mesh.positions, before.mesh.first, before.mesh.corners, before.known.hints.sides,
                      before.attributes);
         in.make(draft, false);
-        const bool is_better = ranks.is_first()
-                               && slits.is_better(draft.facets.known.intersections.count,
-                                                  border_of(draft.facets), before.known.intersections.count);
-        if (!ranks.of_first(is_better)) {
+        if (!ranks.of_first(ranks.is_first() && are_better(faults_of(draft.facets), faults))) {
             draft.facets = WholeFacets(); // its memory first
             waiting.restore();
             std::swap(next, draft);
@@ -113,6 +116,7 @@ void complete_slits(const DraftsInput& in, TiledDraft& draft, Report& report) {
 void spread_attributes(WholeFacets& facets) {
     const AttributeRows& rows = facets.rows;
     if (rows.columns().empty()) return;
+    facets.known.links.reset(); // its memory
     const auto row = [&](std::size_t v) { return facets.attributes.data() + v * rows.bytes(); };
     std::vector<std::uint8_t> measured(facets.mesh.vertex_count());
     for (std::size_t v = 0; v < measured.size(); ++v) measured[v] = rows.kind(row(v)) == PointKind::measured;

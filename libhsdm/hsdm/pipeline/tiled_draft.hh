@@ -6,7 +6,9 @@
 #include "hsdm/pipeline/make_tiles.hh"
 #include "hsdm/pipeline/whole_of_tiles.hh"
 
+#include <functional>
 #include <memory>
+#include <optional>
 
 namespace hsdm {
 

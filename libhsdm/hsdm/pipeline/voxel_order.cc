@@ -4,6 +4,7 @@
 #include "hsdm/core/groups.hh"
 #include "hsdm/core/large_vector.hh"
 
+#include <algorithm>
 #include <atomic>
 #include <cassert>
 
@@ -82,10 +83,6 @@ FacetLinks rearranged(const FacetLinks& before, const PolygonMesh& old_mesh, con
     });
     return links;
 }
-
-} // namespace
-
-namespace {
 
 /// Do vertices, all of which have facets, and facets come as order_by_voxels() puts them?
 bool are_in_order(const std::vector<Index>& voxel, const std::vector<std::uint8_t>& used,
