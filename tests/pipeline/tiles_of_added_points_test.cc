@@ -140,7 +140,7 @@ TEST_CASE("points are added in tiles that have nothing beside them", "[pipeline]
     check_same_added(open, reconstruct_in_tiles(view_of(cloud), options, added_tiles(9000)));
 }
 
-TEST_CASE("points that were added are told in files of flat arrays", "[pipeline][tiles]") {
+TEST_CASE("points that were added are told in files of flat arrays", "[pipeline][tiles][slow]") {
     const PointCloud cloud = slit_box(false);
     ReconstructOptions options{.threads = 2};
     options.voxel_size = slit_voxel;
