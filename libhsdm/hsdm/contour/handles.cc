@@ -210,28 +210,27 @@ private:
     std::vector<Index> ring_, beside_;
 };
 
-/// What was looked at in each block of voxels.
+/// What was looked at in each block of voxels, by the first voxel of each.
 class WorkOfBlocks {
 public:
-    explicit WorkOfBlocks(const OctreeLevel& level) : block_(large_vector<Index>(level.size())) {
-        constexpr int to_block = 3 * handles::block_levels;
-        for_each_in_order(level.size(), [&](std::size_t v) {
-            if (v == 0 || level.codes[v] >> to_block != level.codes[v - 1] >> to_block) work_.push_back(0);
-            block_[v] = static_cast<Index>(work_.size() - 1);
-        });
-    }
+    explicit WorkOfBlocks(const OctreeLevel& level) : codes_(level.codes) {}
 
-    std::size_t& of(Index voxel) { return work_[block_[voxel]]; }
-    /// Did a block with one of these voxels take more than half of what it may?
+    std::size_t& of(Index voxel) {
+        constexpr int to_block = 3 * handles::block_levels;
+        if (work_.empty()) work_ = large_vector<std::size_t>(codes_.size()); // most meshes have no doubts
+        const auto first = std::ranges::lower_bound(codes_, codes_[voxel] >> to_block << to_block);
+        return work_[static_cast<std::size_t>(first - codes_.begin())];
+    }
+    /// Did a block whose first voxel is one of these take more than half of what it may?
     bool is_crowded(const PartVoxels& voxels) const {
-        for (Index v = 0; v < block_.size(); ++v)
-            if (2 * work_[block_[v]] > handles::most_work && voxels.owns(v)) return true;
+        for (Index v = 0; v < work_.size(); ++v)
+            if (2 * work_[v] > handles::most_work && voxels.owns(v)) return true;
         return false;
     }
 
 private:
-    std::vector<Index> block_;      // per voxel
-    std::vector<std::size_t> work_; // per block, facets
+    const std::vector<MortonCode>& codes_;
+    std::vector<std::size_t> work_; // facets
 };
 
 /// One round: all rings that can be cut without touching each other.
@@ -263,11 +262,12 @@ public:
         assign_large(touched_, mesh_.vertex_count(), 0);
         assign_large(seen_, mesh_.facet_count(), 0);
         for_each_in_order(roots.size(), [&](std::size_t i) {
-            if (done_.of(voxel_at(roots[i])) > handles::most_work) return;
+            std::size_t& done = done_.of(voxel_at(roots[i]));
+            if (done > handles::most_work) return;
             Interruption::poll();
             work_ = 0;
             look_at(roots[i], vicinity);
-            done_.of(voxel_at(roots[i])) += work_;
+            done += work_;
         });
         for (const Ring& ring : rings_) open(ring);
         for (const auto& [v, place] : moves_) mesh_.positions[v] = place;

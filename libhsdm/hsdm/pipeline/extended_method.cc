@@ -114,11 +114,20 @@ bool turn_solid_outward(PolygonMesh& mesh) {
     return true;
 }
 
+/// The facets' links, which are found once.
+const FacetLinks& links_of(DualContour& facets) {
+    if (!facets.links) facets.links = link_facets(facets.mesh);
+    return *facets.links;
+}
+
+bool is_open(DualContour& facets) {
+    const std::vector<Index>& twins = links_of(facets).twin;
+    return std::ranges::find(twins, no_index) != twins.end();
+}
+
 /// A hole may be of the part: where the surface has borders anyway, nothing says that it is none.
-void warn_of_wide_holes(const MethodInput& in, const DualContour& facets, Report& report) {
-    if (closes_all(in.options.holes) || facets.wide_holes.count == 0
-        || measure_connectivity(facets.mesh).closed())
-        return;
+void warn_of_wide_holes(const MethodInput& in, DualContour& facets, Report& report) {
+    if (closes_all(in.options.holes) || facets.wide_holes.count == 0 || !is_open(facets)) return;
     Occurrences wide = facets.wide_holes;
     wide.first += in.octree.origin;
     warn(warning_of::wide_holes, wide, in.frame, report);
@@ -137,7 +146,7 @@ PolygonMesh finished(const MethodInput& in, NormalSets&& sets, DualContour& face
     report.rejected["normals_turned"] = turned ? measured_points(in.octree) : 0;
     if (in.options.classify) {
         SheetFeatures features = in.phases.run("sheet features", 0.5, report.seconds.features, [&] {
-            if (!facets.links) facets.links = link_facets(facets.mesh);
+            links_of(facets);
             known.links = std::move(facets.links);
             return sheet_features(in.octree, in.level, sets, facets.mesh, *known.links, facets.voxel,
                                   in.options.crease_angle, turned);
@@ -199,13 +208,9 @@ void order_by_voxels(const MethodInput& in, DualContour& facets) {
 /// The loops of a draft's facets, which are in the order of voxels then if there are any; those of an
 /// adaptive grid keep theirs.
 BoundaryLoops loops_of(const MethodInput& in, DualContour& facets) {
-    if (!facets.links) facets.links = link_facets(facets.mesh);
-    if (std::ranges::find(facets.links->twin, no_index) == facets.links->twin.end()) return {};
-    if (!wants_adaptive(in.options)) {
-        order_by_voxels(in, facets);
-        if (!facets.links) facets.links = link_facets(facets.mesh);
-    }
-    return boundary_loops(facets.mesh, *facets.links);
+    if (!is_open(facets)) return {};
+    if (!wants_adaptive(in.options)) order_by_voxels(in, facets);
+    return boundary_loops(facets.mesh, links_of(facets));
 }
 
 /// Do most of the points whose scanner is known face it? If not, their normals point into solids.
@@ -274,7 +279,7 @@ void complete_slits(Completing how, Draft& draft) {
         draft.facets.cells.reset(), draft.facets.links.reset(); // frees what is not needed any more
         Draft next = how.draft(in, completion.points, draft.report, 0, options);
         const FacetFaults after{next.facets.intersections.after,
-                                boundary_loops(next.facets.mesh).vertices.size()};
+                                boundary_loops(next.facets.mesh, links_of(next.facets)).vertices.size()};
         if (!are_better(after, before)) {
             draft.report.seconds = next.report.seconds;
             return;

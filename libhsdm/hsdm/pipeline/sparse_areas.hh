@@ -54,6 +54,8 @@ public:
         return above == 0 ? finest_ : coarser_[static_cast<std::size_t>(above) - 1];
     }
 
+    /// How many levels from the finest on are too fine for a point.
+    std::uint8_t levels_too_fine(std::size_t point) const { return sparse_on_[point]; }
     /// Are measured points too few for the voxels of the level `above` the finest, but not missing, at a
     /// place of a surface that faces this way? Points within three voxels of the coarsest level tell.
     bool lacks(const Vec3& place, const Vec3& normal, int above) const;

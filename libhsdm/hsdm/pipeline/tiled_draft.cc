@@ -30,10 +30,12 @@ TiledDraft draft_of(const DraftsInput& in, ScratchCloud&& cloud) {
 }
 
 /// The next finer one of helped_draft(), of the coarser one's facets.
-TiledDraft finer_draft(const DraftsInput& in, TiledDraft coarser, int above) {
+TiledDraft finer_draft(const DraftsInput& in, TiledDraft coarser, int above,
+                       const std::vector<SparseVoxel>& sparse) {
     const Vec3 moved = coarser.cloud->origin() - in.cloud.origin();
     for (Vec3& p : coarser.facets.mesh.positions) p += moved;
-    const ScratchCloud between = points_between(in.cloud, coarser.facets.mesh, in.levels, above, in.passes);
+    const ScratchCloud between =
+        points_between(in.cloud, coarser.facets.mesh, in.levels, above, sparse, in.passes);
     coarser = TiledDraft(); // frees what is not needed any more
     return draft_of(in, in.cloud.with_points(between, PointKind::between, in.cloud.depth() - above,
                                              in.passes.most_points));
@@ -42,11 +44,14 @@ TiledDraft finer_draft(const DraftsInput& in, TiledDraft coarser, int above) {
 /// As the one of extended_method().
 TiledDraft first_draft(const DraftsInput& in) {
     TiledDraft draft;
-    if (in.levels > 0)
+    std::vector<SparseVoxel> sparse;
+    if (in.levels > 0) {
+        sparse = sparse_voxels(in.cloud, in.levels, in.passes);
         draft = draft_of(in, in.cloud.in_voxels_of(in.cloud.depth() - in.levels, in.passes.most_points));
+    }
     in.make(draft, false);
     for (int above = in.levels - 1; above >= 0; --above) {
-        draft = finer_draft(in, std::move(draft), above);
+        draft = finer_draft(in, std::move(draft), above, sparse);
         in.make(draft, false);
     }
     return draft;

@@ -88,7 +88,7 @@ public:
           report_(std::move(report)) {
         result_.mesh = std::move(facets.mesh);
         result_.rows = facets.rows, result_.attributes = std::move(facets.attributes);
-        if (facets.known.links) links() = std::move(*facets.known.links), are_linked_ = true;
+        if (facets.known.links) links() = std::move(*facets.known.links);
     }
 
     FlatReconstruction finish() {
@@ -97,7 +97,7 @@ public:
         in_.phases.run("whole", 0.55, seconds.facets, [&] {
             check_facets(mesh(), report_);
             note_intersections(in_, intersections_, report_);
-            if (!are_linked_) links() = link_facets(mesh());
+            if (links().source.empty()) links() = link_facets(mesh());
             leave_out_unsound();
             check_facets(mesh(), report_);
         });
@@ -216,7 +216,6 @@ private:
     const MethodInput method_;
     FeatureHints hints_;
     Occurrences intersections_;
-    bool are_linked_ = false;
     Report report_;
     FlatReconstruction result_;
 };
