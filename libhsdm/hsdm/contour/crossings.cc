@@ -76,8 +76,11 @@ public:
         if (ends_[1] == no_index || passes_by()
             || (!local_.has_members(ends_[0]) && !local_.has_members(ends_[1])))
             return;
-        const VoxelCoord c = grid_.coord(grid_point);
-        low_ = Vec3(c[0], c[1], c[2]) * h_;
+        low_ = grid_.position(grid_point) * h_;
+        way_ = Vec3(0, 0, 0);
+        way_[axis_] = h_;
+        is_moved_ = grid_.is_moved(ends_[0]) || grid_.is_moved(ends_[1]);
+        if (is_moved_) way_ = grid_.position(ends_[1]) * h_ - low_;
         join_sheets();
         if (!measure()) return;
         count_points();
@@ -202,8 +205,8 @@ private:
         sheet.normal = length > 0 ? sheet.normal / length : Vec3(0, 0, 1);
         for (unsigned end : {0u, 1u})
             if (sheet.weight[end] > 0) sheet.distance[end] /= sheet.weight[end];
-        if (!(sheet.weight[0] > 0)) sheet.distance[0] = sheet.distance[1] - h_ * sheet.normal[axis_];
-        if (!(sheet.weight[1] > 0)) sheet.distance[1] = sheet.distance[0] + h_ * sheet.normal[axis_];
+        if (!(sheet.weight[0] > 0)) sheet.distance[0] = sheet.distance[1] - (way_ | sheet.normal);
+        if (!(sheet.weight[1] > 0)) sheet.distance[1] = sheet.distance[0] + (way_ | sheet.normal);
         sheet.crosses = (sheet.distance[0] < 0) != (sheet.distance[1] < 0);
         if (sheet.crosses) sheet.t = sheet.distance[0] / (sheet.distance[0] - sheet.distance[1]);
     }
@@ -231,7 +234,7 @@ private:
             EdgeSheet& of_set = faces[face[place_of(m.set)]];
             const NormalSet& set = sets_.sets[m.set];
             Vec3 d = low_ - set.centroid;
-            d[axis_] += end * h_;
+            if (end == 1) d += way_;
             const double weight = sheet_weight(set, d, h_);
             of_set.weight[end] += weight;
             of_set.distance[end] += weight * (set.normal | d);
@@ -256,9 +259,12 @@ private:
                 if (number_[offset_[end] + m.sheet] == i) f(m, end);
     }
 
-    /// Relation of two sheets, by the vote of their pairs of sets. Where a wall or gap is known between any
-    /// two of them one pair with a single point does not say otherwise.
-    Relation relation_between(std::size_t j, std::size_t k) const {
+    /// Relation of two sheets at a place, by the vote of their pairs of sets: of all alike, but where some
+    /// meet in a convex and some in a concave crease, as round the corner where bars meet, by how near they
+    /// are. Where a wall or gap is known between any two of them one pair with a single point does not say
+    /// otherwise.
+    Relation relation_between(std::size_t j, std::size_t k, const Vec3& at) const {
+        double near = 0;                              // of the convex ones, less that of the concave ones
         unsigned convex = 0, concave = 0, points = 0; // of the lesser sets that vote
         bool any_apart = false;
         for (unsigned end : {0u, 1u}) {
@@ -271,20 +277,25 @@ private:
                     const Relation r = related_(one, other);
                     convex += r == Relation::convex;
                     concave += r == Relation::concave;
-                    if (r == Relation::convex || r == Relation::concave)
+                    if (r == Relation::convex || r == Relation::concave) {
                         points += std::min(one.count, other.count);
+                        const double say = nearness(0.5 * (one.centroid + other.centroid) - at, h_);
+                        near += r == Relation::convex ? say : -say;
+                    }
                     any_apart = any_apart || (r == Relation::none && related_.apart(one, other));
                 }
             }
         }
         if (any_apart && points == 1) return Relation::none;
+        if (convex > 0 && concave > 0) return near > 0 ? Relation::convex : Relation::concave;
         return convex > concave ? Relation::convex : concave > convex ? Relation::concave : Relation::none;
     }
 
     /// Relations of sheet i to every other sheet here.
     void relate(std::size_t i) {
+        const Vec3 at = position(i);
         for (std::size_t j = 0; j < count_; ++j)
-            relations_[j] = j == i ? Relation::none : relation_between(i, j);
+            relations_[j] = j == i ? Relation::none : relation_between(i, j, at);
         relations_for_ = i;
     }
 
@@ -319,7 +330,8 @@ private:
             const Relation opposite = wants_outside ? Relation::convex : Relation::concave;
             double off = distance_to(j, i);
             for (std::size_t k = 0; k < count_ && off > 0; ++k) {
-                if (k == i || k == j || relations_[k] != relations_[j] || relation_between(j, k) != opposite)
+                if (k == i || k == j || relations_[k] != relations_[j]
+                    || relation_between(j, k, position(i)) != opposite)
                     continue;
                 off = outside_at(k, i) == wants_outside ? 0 : std::min(off, distance_to(k, i));
             }
@@ -333,15 +345,13 @@ private:
         return static_cast<float>(std::min(1.0, off / (sheets::surface_error() * h_)));
     }
 
-    Vec3 position(std::size_t i) const {
-        Vec3 p = low_;
-        p[axis_] += sheets_[i].t * h_;
-        return p;
-    }
+    Vec3 position(std::size_t i) const { return low_ + sheets_[i].t * way_; }
 
     /// Do the data carry the sheet into all four voxels beside the edge, slivers apart? A voxel in which few
     /// points are expected is a sliver; any other must hold at least a fair share of the points expected.
     bool supported(std::size_t i) const {
+        if (is_moved_)
+            return true; // its grid points moved to where sheets are all round; points are asked later
         const EdgeSheet& sheet = sheets_[i];
         double density = 0; // the densest sheet's: this sheet may hold clipped voxels only
         for (std::size_t j = 0; j < count_; ++j) density = std::max(density, sheets_[j].density());
@@ -400,7 +410,7 @@ private:
             const double d = (sets_.sets[m.set].centroid - x).sqrnorm();
             if (d < nearest || (d == nearest && m.set < set)) nearest = d, set = m.set;
         });
-        carried = carried && nearest < sheets::beside * sheets::beside * h_ * h_;
+        carried = carried && (is_moved_ || nearest < sheets::beside * sheets::beside * h_ * h_);
         return {sheets_[i].t,         sheets_[i].normal, 3 * ends_[0] + axis_, set,
                 sheets_[i].leaving(), carried,           sheets_[i].by_crease};
     }
@@ -417,7 +427,8 @@ private:
     Index members_of_[2] = {no_index, no_index};
     SheetMembers members_[2]; // of those grid points
     unsigned axis_ = 0;
-    Vec3 low_;
+    Vec3 low_, way_;        // the lower end, and from it to the upper one
+    bool is_moved_ = false; // does one of them lie off its place?
     std::size_t offset_[2] = {0, 0};
     std::array<std::uint8_t, most> parent_;
     std::array<std::uint8_t, most>
@@ -427,6 +438,19 @@ private:
     std::array<Relation, most> relations_;
     std::size_t relations_for_ = most;
 };
+
+std::vector<Crossings::MovedEdge> moved_edges(const GridPoints& grid) {
+    if (grid.moved_by.empty()) return {};
+    const auto moved_by = [&](Index c) { return grid.is_moved(c) ? grid.moved_by[c] : Vec3(0, 0, 0); };
+    const auto add = [&](std::size_t begin, std::size_t end, std::vector<Crossings::MovedEdge>& found) {
+        for (auto c = static_cast<Index>(begin); c < end; ++c)
+            for (unsigned axis = 0; axis < 3; ++axis)
+                if (const Index up = grid.next[c][axis];
+                    up != no_index && (grid.is_moved(c) || grid.is_moved(up)))
+                    found.push_back({3 * c + axis, {moved_by(c), moved_by(up)}});
+    };
+    return collected<Crossings::MovedEdge>(grid.size(), chunks::usual, add);
+}
 
 } // namespace
 
@@ -450,13 +474,20 @@ Crossings find_crossings(const GridPoints& grid, const LocalSheets& local, const
     result.crossings = collected<Crossing>(grid.size(), chunks::slow, find);
     counts_to_first(result.first);
     result.dropped_beyond_crease = dropped;
+    result.moved = moved_edges(grid);
     return result;
 }
 
 Vec3 crossing_position(const GridPoints& grid, const Crossing& crossing, double voxel_size) {
-    const VoxelCoord c = grid.coord(crossing.edge / 3);
-    Vec3 p(c[0], c[1], c[2]);
-    p[crossing.edge % 3] += crossing.t;
+    const Index lower = crossing.edge / 3;
+    const unsigned axis = crossing.edge % 3;
+    Vec3 p = grid.position(lower);
+    if (!grid.moved_by.empty()) {
+        const Index upper = grid.next[lower][axis];
+        if (upper != no_index && (grid.is_moved(lower) || grid.is_moved(upper)))
+            return (p + crossing.t * (grid.position(upper) - p)) * voxel_size;
+    }
+    p[axis] += crossing.t;
     return p * voxel_size;
 }
 

@@ -6,7 +6,7 @@
 
 #include <cstddef>
 
-// surrounding.hh: inner_tunnels.hh, witnesses.hh
+// surrounding.hh: bar_lines.hh, witnesses.hh
 namespace hsdm::surrounding {
 
 /// radians: between neighbouring directions of what lies all round an axis.

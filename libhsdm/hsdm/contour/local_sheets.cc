@@ -302,9 +302,8 @@ LocalSheets group_local_sheets(const GridPoints& grid, const NormalSets& sets, c
                 grid_point.renumber();
                 grid_point.copy_sheets_of_members(result.sheets_of_members(i));
             }
-            const VoxelCoord c = grid.coord(i);
-            grid_point.measure(Vec3(c[0], c[1], c[2]) * voxel_size, sets, voxel_size);
-            grid_point.snap(voxel_size);
+            grid_point.measure(grid.position(i) * voxel_size, sets, voxel_size);
+            if (!grid.is_moved(i)) grid_point.snap(voxel_size);
             std::copy_n(grid_point.sheets.begin(), grid_point.sheet_count,
                         result.sheets.data() + result.first_sheet[i]);
         }
