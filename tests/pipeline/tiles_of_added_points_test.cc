@@ -26,7 +26,9 @@ TileOptions added_tiles(std::size_t points, KeptScratch* kept = nullptr) {
 void paint_by_place(PointCloud& cloud) {
     Scalar height{"height", {}, false};
     for (const Vec3& p : cloud.positions) {
-        const auto channel = [](double x) { return static_cast<std::uint8_t>(std::lround(128 + 40 * x) & 255); };
+        const auto channel = [](double x) {
+            return static_cast<std::uint8_t>(std::lround(128 + 40 * x) & 255);
+        };
         cloud.colors.push_back({channel(p[0]), channel(p[1]), channel(p[2]), 255});
         height.values.push_back(p[2]);
     }

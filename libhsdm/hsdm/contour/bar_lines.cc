@@ -28,7 +28,7 @@ struct PassedFace {
 struct Passage {
     Vec3 middle;   ///< in voxels
     Vec3 along;    ///< unit, of either sign
-    double radius; ///< mean distance of the middle from the sets, in voxels
+    double radius; ///< of the middle from the sets, by least squares, in voxels
 };
 
 std::array<Index, 4> corners_of(const GridPoints& grid, const PassedFace& face) {
@@ -102,11 +102,15 @@ private:
     /// By the sets that go on, else with the others, else with those around. A bore in a bar counts for both:
     /// of the two the narrower.
     std::optional<Passage> find_along(const PassedFace& face, const Vec3& along) {
+        const Frame across(along);
         along_.clear();
         for (const Sets* sets : {&through_, &others_, &around_}) {
             std::ranges::copy_if(*sets, std::back_inserter(along_), [&](const NormalSet* s) {
                 return std::abs(s->normal | along) < angles::half_of_sheet;
             });
+            angles_.clear();
+            for (const NormalSet* s : along_) angles_.push_back(across.angle_of(s->normal));
+            if (wide_gaps(angles_) > 0) continue; // nothing goes all round, as in a wall
             const auto bar = find_round(face, along, true), bore = find_round(face, along, false);
             if (bar && bore) return bar->radius < bore->radius ? bar : bore;
             if (bar || bore) return bar ? bar : bore;
@@ -221,8 +225,10 @@ void claim_between(const Vec3& from, VoxelCoord at, const Vec3& to, const VoxelC
 void claim_line(const Passage& passage, unsigned axis, std::vector<Claim>& claims) {
     const auto here = nearest_two(passage.middle, axis);
     claims.push_back({passage.middle, Claim::in_face, here});
-    if (3 * passage.along[axis] * passage.along[axis] < 1)
-        return; // it passes faces across another axis sooner
+    for (unsigned k = 0; k < 3; ++k) { // it goes on to planes of the axis that it is steepest to
+        const double other = std::abs(passage.along[k]), own = std::abs(passage.along[axis]);
+        if (other > own || (other == own && k < axis)) return;
+    }
     const Vec3 step = passage.along / passage.along[axis];
     for (const double way : {-1.0, 1.0}) {
         const Vec3 place = passage.middle + way * step;
@@ -242,7 +248,7 @@ std::optional<PassedFace> passed_face(const GridPoints& grid, const NormalSets& 
         if (v == no_index || sets.first[v] == sets.first[v + 1]) return {};
         count += sets.first[v + 1] - sets.first[v];
     }
-    return count > points_of_plane ? std::optional(face) : std::nullopt; // two sides of it, on either side
+    return count >= 2 * two_agree ? std::optional(face) : std::nullopt; // two sides of it, on either side
 }
 
 /// Moves grid points to the places that want them; those that go without then ask for what is left.
@@ -301,6 +307,7 @@ void ask_points_at_bars(const Octree& octree, const OctreeLevel& level, const Gr
     const double h = level.voxel_size;
     for_each_index(crossings.moved.size(), chunks::slow, [&](Index i) {
         const Index edge = crossings.moved[i].edge;
+        if (crossings.on_edge(edge).empty()) return;
         std::vector<Index> voxels;
         for (const Index end : {edge / 3, grid.next[edge / 3][edge % 3]})
             std::ranges::copy_if(grid.voxels[end], std::back_inserter(voxels),
@@ -309,20 +316,17 @@ void ask_points_at_bars(const Octree& octree, const OctreeLevel& level, const Gr
         std::size_t points = 0;
         for (const Index v : voxels) points += level.first_point[v + 1] - level.first_point[v];
         if (points == 0) return;
-        const double spacings = handles::beside_place * handles::beside_place,
-                     reach = spacings * h * h * static_cast<double>(voxels.size())
-                             / static_cast<double>(points); // squared
+        const double spacings = handles::beside_place * handles::beside_place; // squared, as the reach
+        const double reach =
+            spacings * h * h * static_cast<double>(voxels.size()) / static_cast<double>(points);
         for (Index x = crossings.first[edge]; x < crossings.first[edge + 1]; ++x) {
             Crossing& crossing = crossings.crossings[x];
             const Vec3 at = crossing_position(grid, crossing, h);
-            const auto speaks_for = [&](Index p) {
-                return (octree.normals[p] | crossing.normal) > angles::facing
-                       && (octree.positions[p] - at).sqrnorm() < reach;
-            };
             bool has_point = false;
             for (const Index v : voxels)
                 for (Index p = level.first_point[v]; p < level.first_point[v + 1] && !has_point; ++p)
-                    has_point = speaks_for(p);
+                    has_point = (octree.normals[p] | crossing.normal) > angles::facing
+                                && (octree.positions[p] - at).sqrnorm() < reach;
             if (!has_point) crossing.standing = crossing.supported = false;
         }
     });

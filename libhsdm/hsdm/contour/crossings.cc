@@ -77,10 +77,8 @@ public:
             || (!local_.has_members(ends_[0]) && !local_.has_members(ends_[1])))
             return;
         low_ = grid_.position(grid_point) * h_;
-        way_ = Vec3(0, 0, 0);
-        way_[axis_] = h_;
+        way_ = edge_vector(grid_, 3 * grid_point + axis, h_);
         is_moved_ = grid_.is_moved(ends_[0]) || grid_.is_moved(ends_[1]);
-        if (is_moved_) way_ = grid_.position(ends_[1]) * h_ - low_;
         join_sheets();
         if (!measure()) return;
         count_points();
@@ -259,36 +257,46 @@ private:
                 if (number_[offset_[end] + m.sheet] == i) f(m, end);
     }
 
-    /// Relation of two sheets at a place, by the vote of their pairs of sets: of all alike, but where some
-    /// meet in a convex and some in a concave crease, as round the corner where bars meet, by how near they
-    /// are. Where a wall or gap is known between any two of them one pair with a single point does not say
-    /// otherwise.
+    /// Calls f(one, other) for the pairs of sets of two sheets that an end of the edge sees.
+    template <class F>
+    void for_pairs(std::size_t j, std::size_t k, F&& f) const {
+        for (unsigned end : {0u, 1u})
+            for (const SheetMember& a : members_[end]) {
+                if (number_[offset_[end] + a.sheet] != j) continue;
+                for (const SheetMember& b : members_[end])
+                    if (number_[offset_[end] + b.sheet] == k) f(sets_.sets[a.set], sets_.sets[b.set]);
+            }
+    }
+
+    /// Relation of two sheets at a place, by the vote of their pairs of sets. Where a wall or gap is known
+    /// between any two of them one pair with a single point does not say otherwise.
     Relation relation_between(std::size_t j, std::size_t k, const Vec3& at) const {
-        double near = 0;                              // of the convex ones, less that of the concave ones
         unsigned convex = 0, concave = 0, points = 0; // of the lesser sets that vote
         bool any_apart = false;
-        for (unsigned end : {0u, 1u}) {
-            const SheetMembers& members = members_[end];
-            for (const SheetMember& a : members) {
-                if (number_[offset_[end] + a.sheet] != j) continue;
-                for (const SheetMember& b : members) {
-                    if (number_[offset_[end] + b.sheet] != k) continue;
-                    const NormalSet &one = sets_.sets[a.set], &other = sets_.sets[b.set];
-                    const Relation r = related_(one, other);
-                    convex += r == Relation::convex;
-                    concave += r == Relation::concave;
-                    if (r == Relation::convex || r == Relation::concave) {
-                        points += std::min(one.count, other.count);
-                        const double say = nearness(0.5 * (one.centroid + other.centroid) - at, h_);
-                        near += r == Relation::convex ? say : -say;
-                    }
-                    any_apart = any_apart || (r == Relation::none && related_.apart(one, other));
-                }
-            }
-        }
+        for_pairs(j, k, [&](const NormalSet& one, const NormalSet& other) {
+            const Relation r = related_(one, other);
+            convex += r == Relation::convex;
+            concave += r == Relation::concave;
+            if (r == Relation::convex || r == Relation::concave) points += std::min(one.count, other.count);
+            any_apart = any_apart || (r == Relation::none && related_.apart(one, other));
+        });
         if (any_apart && points == 1) return Relation::none;
-        if (convex > 0 && concave > 0) return near > 0 ? Relation::convex : Relation::concave;
+        if (convex > 0 && concave > 0) return nearer_relation(j, k, at);
         return convex > concave ? Relation::convex : concave > convex ? Relation::concave : Relation::none;
+    }
+
+    /// Of two sheets that meet in a convex crease at one place and in a concave one at another, as round the
+    /// corner where bars meet: pairs count by their points and how near they are.
+    Relation nearer_relation(std::size_t j, std::size_t k, const Vec3& at) const {
+        double convex = 0; // less what speaks for concave
+        for_pairs(j, k, [&](const NormalSet& one, const NormalSet& other) {
+            const Relation r = related_(one, other);
+            if (r != Relation::convex && r != Relation::concave) return;
+            const NormalSet& lesser = one.count < other.count ? one : other;
+            const double say = sheet_weight(lesser, 0.5 * (one.centroid + other.centroid) - at, h_);
+            convex += r == Relation::convex ? say : -say;
+        });
+        return convex > 0 ? Relation::convex : convex < 0 ? Relation::concave : Relation::none;
     }
 
     /// Relations of sheet i to every other sheet here.
@@ -476,6 +484,15 @@ Crossings find_crossings(const GridPoints& grid, const LocalSheets& local, const
     result.dropped_beyond_crease = dropped;
     result.moved = moved_edges(grid);
     return result;
+}
+
+Vec3 edge_vector(const GridPoints& grid, Index edge, double voxel_size) {
+    const Index lower = edge / 3, upper = grid.next[lower][edge % 3];
+    if (grid.is_moved(lower) || grid.is_moved(upper))
+        return (grid.position(upper) - grid.position(lower)) * voxel_size;
+    Vec3 way(0, 0, 0);
+    way[edge % 3] = voxel_size;
+    return way;
 }
 
 Vec3 crossing_position(const GridPoints& grid, const Crossing& crossing, double voxel_size) {

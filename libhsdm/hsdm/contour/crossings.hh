@@ -51,6 +51,9 @@ struct Crossings {
 
     /// The crossing that a facet is dual to.
     const Crossing& of(FacetCorner corner) const { return crossings[corner.crossing()]; }
+    bool is_moved(Index edge) const {
+        return !moved.empty() && std::ranges::binary_search(moved, edge, {}, &MovedEdge::edge);
+    }
     /// How far a crossing is off the place that its edge would have, in voxels.
     Vec3 offset_of(const Crossing& crossing) const {
         if (moved.empty()) return {0, 0, 0};
@@ -66,6 +69,9 @@ struct Crossings {
 /// Every crossing that some sheet has, as candidates. O(grid points), parallel.
 Crossings find_crossings(const GridPoints& grid, const LocalSheets& sheets, const NormalSets& sets,
                          const RelationTest& related, double voxel_size, const CrossingOptions& options = {});
+
+/// From the lower end of an edge to its upper one, which must be there.
+Vec3 edge_vector(const GridPoints& grid, Index edge, double voxel_size);
 
 /// Where a crossing lies, relative to the octree's origin.
 Vec3 crossing_position(const GridPoints& grid, const Crossing& crossing, double voxel_size);

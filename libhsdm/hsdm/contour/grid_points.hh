@@ -22,8 +22,8 @@ struct GridPoints {
         MortonIndex index; ///< code -> number in the part
     };
     std::vector<Part> parts;
-    /// Per grid point, voxels: how far off its place it lies (move_to_bar_lines). None beyond the end
-    /// does.
+    /// Per grid point, voxels: how far off its place it lies (move_to_bar_lines), or empty; those that
+    /// extend_grid_points adds lie at theirs.
     std::vector<Vec3> moved_by;
 
     std::size_t size() const { return codes.size(); }

@@ -45,15 +45,10 @@ struct LocalSheet {
     Vec3 normal{0, 0, 0}; ///< weight times the unit normals
 };
 
-/// From 1 at a place to 0 far off it.
-inline double nearness(const Vec3& d, double voxel_size) {
-    const double falloff = 1 / (sheets::nearness * sheets::nearness * voxel_size * voxel_size);
-    return std::exp(-d.sqrnorm() * falloff);
-}
-
 /// The say of a set about a place that lies `d` from its centroid.
 inline double sheet_weight(const NormalSet& set, const Vec3& d, double voxel_size) {
-    return std::min<double>(set.count, spacings::points_per_voxel) * nearness(d, voxel_size);
+    const double falloff = 1 / (sheets::nearness * sheets::nearness * voxel_size * voxel_size);
+    return std::min<double>(set.count, spacings::points_per_voxel) * std::exp(-d.sqrnorm() * falloff);
 }
 
 /// Sheets of every grid point, and which of them its members belong to: those of grid point c are

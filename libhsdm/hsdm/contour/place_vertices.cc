@@ -119,8 +119,8 @@ double misfit(const Vec3& p, const Problem& problem) {
 /// Is a point inside the box by at least `slack` voxels, or, if negative, outside by at most that?
 bool is_inside(const Vec3& p, const Problem& problem, double slack = placement::margin) {
     for (unsigned k = 0; k < 3; ++k) {
-        const double at = (p[k] - problem.lo[k]) / problem.extent[k];
-        if (at < slack || at > 1 - slack) return false;
+        const double at = (p[k] - problem.lo[k]) / problem.size;
+        if (at < slack || at > problem.extent[k] / problem.size - slack) return false;
     }
     return true;
 }
@@ -259,13 +259,15 @@ private:
         for (unsigned k = 0; k < 3; ++k) problem_.lo[k] = at.coord[k] * mesh_.voxel_size;
         problem_.extent = Vec3(1, 1, 1) * mesh_.voxel_size;
         problem_.mean = Vec3(0, 0, 0);
+        bool is_moved = false;
         mesh_.duals.for_each_corner(dual, [&](FacetCorner corner) {
             const Vec3 p = mesh_.crossing_position_of(corner, dual);
             problem_.planes.push_back({mesh_.crossings.of(corner).normal, p, 1});
             by_crease_ |= mesh_.crossings.of(corner).by_crease;
+            is_moved |= mesh_.crossings.is_moved(mesh_.crossings.of(corner).edge);
             problem_.mean += p;
         });
-        if (!mesh_.crossings.moved.empty()) include_crossings();
+        if (is_moved) include_crossings();
         std::ranges::reverse(problem_.planes); // either order would do, and must not turn with the normals
         problem_.mean /= static_cast<double>(corners.size());
         return voxel_ == no_index || add_own_sets(corners);
@@ -383,7 +385,7 @@ private:
     VoxelCoord step_to(const Vec3& position) const {
         VoxelCoord step;
         for (unsigned k = 0; k < 3; ++k) {
-            const double at = (position[k] - problem_.lo[k]) / problem_.extent[k];
+            const double at = (position[k] - problem_.voxel[k] * problem_.size) / problem_.size;
             step[k] = (at > 1 - placement::margin) - (at < placement::margin);
         }
         return step;
