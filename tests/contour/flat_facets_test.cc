@@ -43,3 +43,34 @@ TEST_CASE("facets without an area collapse, and the surface stays closed", "[con
         CHECK(collapse_flat_facets(Vec3(10, 0, 0), mesh) == 0);
     }
 }
+
+namespace {
+
+PolygonMesh mesh_of(std::vector<Vec3> positions, const std::vector<std::vector<Index>>& facets) {
+    PolygonMesh mesh;
+    mesh.positions = std::move(positions);
+    for (const std::vector<Index>& facet : facets) mesh.add_facet(facet);
+    mesh.origin.resize(mesh.vertex_count());
+    std::iota(mesh.origin.begin(), mesh.origin.end(), Index{0});
+    return mesh;
+}
+
+} // namespace
+
+TEST_CASE("facets without an area go where vertices lose their third facet by it", "[contour]") {
+    // A tetrahedron: its tip three vertices at one place, or a facet in one line along an edge.
+    const Vec3 a(0, 0, 0), b(2, 0, 0), c(0, 2, 0), tip(0.5, 0.5, 2);
+    const auto mesh = GENERATE_COPY(values(
+        {mesh_of({a, b, c, tip, tip, tip}, {{0, 2, 1}, {0, 1, 4, 3}, {1, 2, 5, 4}, {2, 0, 3, 5}, {3, 4, 5}}),
+         mesh_of({a, b, c, tip, 0.25 * tip, 0.5 * tip},
+                 {{0, 2, 1}, {0, 1, 3, 4}, {2, 0, 4, 5, 3}, {1, 2, 3}, {4, 3, 5}})}));
+    PolygonMesh changed = mesh;
+    REQUIRE(measure_topology(mesh).closed());
+    CHECK(collapse_flat_facets(Vec3(0, 0, 0), changed) > 0);
+    CHECK(support::faults(changed) == "");
+    CHECK(changed.vertex_count() == 4);
+    CHECK(measure_topology(changed).closed());
+    CHECK(measure_topology(changed).euler == 2);
+    CHECK(signed_volume(changed) == Approx(signed_volume(mesh)));
+    CHECK(collapse_flat_facets(Vec3(0, 0, 0), changed) == 0);
+}

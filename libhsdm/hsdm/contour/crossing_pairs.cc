@@ -65,6 +65,7 @@ private:
             Vec3 position(0, 0, 0);
             position[axis] = crossing.t;
             position[across_axis] = across;
+            if (!crossings_.moved.empty()) position += crossings_.offset_of(crossing);
             stops_.push_back({{x, side}, position, crossing.leaving == forward});
         }
         if (!forward) std::reverse(stops_.begin() + static_cast<std::ptrdiff_t>(first), stops_.end());

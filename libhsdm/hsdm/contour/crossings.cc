@@ -76,8 +76,9 @@ public:
         if (ends_[1] == no_index || passes_by()
             || (!local_.has_members(ends_[0]) && !local_.has_members(ends_[1])))
             return;
-        const VoxelCoord c = grid_.coord(grid_point);
-        low_ = Vec3(c[0], c[1], c[2]) * h_;
+        low_ = grid_.position(grid_point) * h_;
+        way_ = edge_vector(grid_, 3 * grid_point + axis, h_);
+        is_moved_ = grid_.is_moved(ends_[0]) || grid_.is_moved(ends_[1]);
         join_sheets();
         if (!measure()) return;
         count_points();
@@ -202,8 +203,8 @@ private:
         sheet.normal = length > 0 ? sheet.normal / length : Vec3(0, 0, 1);
         for (unsigned end : {0u, 1u})
             if (sheet.weight[end] > 0) sheet.distance[end] /= sheet.weight[end];
-        if (!(sheet.weight[0] > 0)) sheet.distance[0] = sheet.distance[1] - h_ * sheet.normal[axis_];
-        if (!(sheet.weight[1] > 0)) sheet.distance[1] = sheet.distance[0] + h_ * sheet.normal[axis_];
+        if (!(sheet.weight[0] > 0)) sheet.distance[0] = sheet.distance[1] - (way_ | sheet.normal);
+        if (!(sheet.weight[1] > 0)) sheet.distance[1] = sheet.distance[0] + (way_ | sheet.normal);
         sheet.crosses = (sheet.distance[0] < 0) != (sheet.distance[1] < 0);
         if (sheet.crosses) sheet.t = sheet.distance[0] / (sheet.distance[0] - sheet.distance[1]);
     }
@@ -231,7 +232,7 @@ private:
             EdgeSheet& of_set = faces[face[place_of(m.set)]];
             const NormalSet& set = sets_.sets[m.set];
             Vec3 d = low_ - set.centroid;
-            d[axis_] += end * h_;
+            if (end == 1) d += way_;
             const double weight = sheet_weight(set, d, h_);
             of_set.weight[end] += weight;
             of_set.distance[end] += weight * (set.normal | d);
@@ -256,35 +257,53 @@ private:
                 if (number_[offset_[end] + m.sheet] == i) f(m, end);
     }
 
-    /// Relation of two sheets, by the vote of their pairs of sets. Where a wall or gap is known between any
-    /// two of them one pair with a single point does not say otherwise.
-    Relation relation_between(std::size_t j, std::size_t k) const {
+    /// Calls f(one, other) for the pairs of sets of two sheets that an end of the edge sees.
+    template <class F>
+    void for_pairs(std::size_t j, std::size_t k, F&& f) const {
+        for (unsigned end : {0u, 1u})
+            for (const SheetMember& a : members_[end]) {
+                if (number_[offset_[end] + a.sheet] != j) continue;
+                for (const SheetMember& b : members_[end])
+                    if (number_[offset_[end] + b.sheet] == k) f(sets_.sets[a.set], sets_.sets[b.set]);
+            }
+    }
+
+    /// Relation of two sheets at a place, by the vote of their pairs of sets. Where a wall or gap is known
+    /// between any two of them one pair with a single point does not say otherwise.
+    Relation relation_between(std::size_t j, std::size_t k, const Vec3& at) const {
         unsigned convex = 0, concave = 0, points = 0; // of the lesser sets that vote
         bool any_apart = false;
-        for (unsigned end : {0u, 1u}) {
-            const SheetMembers& members = members_[end];
-            for (const SheetMember& a : members) {
-                if (number_[offset_[end] + a.sheet] != j) continue;
-                for (const SheetMember& b : members) {
-                    if (number_[offset_[end] + b.sheet] != k) continue;
-                    const NormalSet &one = sets_.sets[a.set], &other = sets_.sets[b.set];
-                    const Relation r = related_(one, other);
-                    convex += r == Relation::convex;
-                    concave += r == Relation::concave;
-                    if (r == Relation::convex || r == Relation::concave)
-                        points += std::min(one.count, other.count);
-                    any_apart = any_apart || (r == Relation::none && related_.apart(one, other));
-                }
-            }
-        }
+        for_pairs(j, k, [&](const NormalSet& one, const NormalSet& other) {
+            const Relation r = related_(one, other);
+            convex += r == Relation::convex;
+            concave += r == Relation::concave;
+            if (r == Relation::convex || r == Relation::concave) points += std::min(one.count, other.count);
+            any_apart = any_apart || (r == Relation::none && related_.apart(one, other));
+        });
         if (any_apart && points == 1) return Relation::none;
+        if (convex > 0 && concave > 0) return nearer_relation(j, k, at);
         return convex > concave ? Relation::convex : concave > convex ? Relation::concave : Relation::none;
+    }
+
+    /// Of two sheets that meet in a convex crease at one place and in a concave one at another, as round the
+    /// corner where bars meet: pairs count by their points and how near they are.
+    Relation nearer_relation(std::size_t j, std::size_t k, const Vec3& at) const {
+        double convex = 0; // less what speaks for concave
+        for_pairs(j, k, [&](const NormalSet& one, const NormalSet& other) {
+            const Relation r = related_(one, other);
+            if (r != Relation::convex && r != Relation::concave) return;
+            const NormalSet& lesser = one.count < other.count ? one : other;
+            const double say = sheet_weight(lesser, 0.5 * (one.centroid + other.centroid) - at, h_);
+            convex += r == Relation::convex ? say : -say;
+        });
+        return convex > 0 ? Relation::convex : convex < 0 ? Relation::concave : Relation::none;
     }
 
     /// Relations of sheet i to every other sheet here.
     void relate(std::size_t i) {
+        const Vec3 at = position(i);
         for (std::size_t j = 0; j < count_; ++j)
-            relations_[j] = j == i ? Relation::none : relation_between(i, j);
+            relations_[j] = j == i ? Relation::none : relation_between(i, j, at);
         relations_for_ = i;
     }
 
@@ -319,7 +338,8 @@ private:
             const Relation opposite = wants_outside ? Relation::convex : Relation::concave;
             double off = distance_to(j, i);
             for (std::size_t k = 0; k < count_ && off > 0; ++k) {
-                if (k == i || k == j || relations_[k] != relations_[j] || relation_between(j, k) != opposite)
+                if (k == i || k == j || relations_[k] != relations_[j]
+                    || relation_between(j, k, position(i)) != opposite)
                     continue;
                 off = outside_at(k, i) == wants_outside ? 0 : std::min(off, distance_to(k, i));
             }
@@ -333,15 +353,13 @@ private:
         return static_cast<float>(std::min(1.0, off / (sheets::surface_error() * h_)));
     }
 
-    Vec3 position(std::size_t i) const {
-        Vec3 p = low_;
-        p[axis_] += sheets_[i].t * h_;
-        return p;
-    }
+    Vec3 position(std::size_t i) const { return low_ + sheets_[i].t * way_; }
 
     /// Do the data carry the sheet into all four voxels beside the edge, slivers apart? A voxel in which few
     /// points are expected is a sliver; any other must hold at least a fair share of the points expected.
     bool supported(std::size_t i) const {
+        if (is_moved_)
+            return true; // its grid points moved to where sheets are all round; points are asked later
         const EdgeSheet& sheet = sheets_[i];
         double density = 0; // the densest sheet's: this sheet may hold clipped voxels only
         for (std::size_t j = 0; j < count_; ++j) density = std::max(density, sheets_[j].density());
@@ -400,7 +418,7 @@ private:
             const double d = (sets_.sets[m.set].centroid - x).sqrnorm();
             if (d < nearest || (d == nearest && m.set < set)) nearest = d, set = m.set;
         });
-        carried = carried && nearest < sheets::beside * sheets::beside * h_ * h_;
+        carried = carried && (is_moved_ || nearest < sheets::beside * sheets::beside * h_ * h_);
         return {sheets_[i].t,         sheets_[i].normal, 3 * ends_[0] + axis_, set,
                 sheets_[i].leaving(), carried,           sheets_[i].by_crease};
     }
@@ -417,7 +435,8 @@ private:
     Index members_of_[2] = {no_index, no_index};
     SheetMembers members_[2]; // of those grid points
     unsigned axis_ = 0;
-    Vec3 low_;
+    Vec3 low_, way_;        // the lower end, and from it to the upper one
+    bool is_moved_ = false; // does one of them lie off its place?
     std::size_t offset_[2] = {0, 0};
     std::array<std::uint8_t, most> parent_;
     std::array<std::uint8_t, most>
@@ -427,6 +446,19 @@ private:
     std::array<Relation, most> relations_;
     std::size_t relations_for_ = most;
 };
+
+std::vector<Crossings::MovedEdge> moved_edges(const GridPoints& grid) {
+    if (grid.moved_by.empty()) return {};
+    const auto moved_by = [&](Index c) { return grid.is_moved(c) ? grid.moved_by[c] : Vec3(0, 0, 0); };
+    const auto add = [&](std::size_t begin, std::size_t end, std::vector<Crossings::MovedEdge>& found) {
+        for (auto c = static_cast<Index>(begin); c < end; ++c)
+            for (unsigned axis = 0; axis < 3; ++axis)
+                if (const Index up = grid.next[c][axis];
+                    up != no_index && (grid.is_moved(c) || grid.is_moved(up)))
+                    found.push_back({3 * c + axis, {moved_by(c), moved_by(up)}});
+    };
+    return collected<Crossings::MovedEdge>(grid.size(), chunks::usual, add);
+}
 
 } // namespace
 
@@ -450,13 +482,29 @@ Crossings find_crossings(const GridPoints& grid, const LocalSheets& local, const
     result.crossings = collected<Crossing>(grid.size(), chunks::slow, find);
     counts_to_first(result.first);
     result.dropped_beyond_crease = dropped;
+    result.moved = moved_edges(grid);
     return result;
 }
 
+Vec3 edge_vector(const GridPoints& grid, Index edge, double voxel_size) {
+    const Index lower = edge / 3, upper = grid.next[lower][edge % 3];
+    if (grid.is_moved(lower) || grid.is_moved(upper))
+        return (grid.position(upper) - grid.position(lower)) * voxel_size;
+    Vec3 way(0, 0, 0);
+    way[edge % 3] = voxel_size;
+    return way;
+}
+
 Vec3 crossing_position(const GridPoints& grid, const Crossing& crossing, double voxel_size) {
-    const VoxelCoord c = grid.coord(crossing.edge / 3);
-    Vec3 p(c[0], c[1], c[2]);
-    p[crossing.edge % 3] += crossing.t;
+    const Index lower = crossing.edge / 3;
+    const unsigned axis = crossing.edge % 3;
+    Vec3 p = grid.position(lower);
+    if (!grid.moved_by.empty()) {
+        const Index upper = grid.next[lower][axis];
+        if (upper != no_index && (grid.is_moved(lower) || grid.is_moved(upper)))
+            return (p + crossing.t * (grid.position(upper) - p)) * voxel_size;
+    }
+    p[axis] += crossing.t;
     return p * voxel_size;
 }
 

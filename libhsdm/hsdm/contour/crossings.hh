@@ -37,6 +37,12 @@ struct Crossing {
 struct Crossings {
     std::vector<Crossing> crossings;
     std::vector<Index> first{0};
+    /// The edges with a grid point off its place, ascending: how far both ends are, in voxels.
+    struct MovedEdge {
+        Index edge;
+        std::array<Vec3, 2> ends;
+    };
+    std::vector<MovedEdge> moved;
     std::size_t dropped_beyond_crease = 0; ///< clipped by the sheet's crease partner
     std::size_t settled = 0;               ///< crossings dropped, restored or invented (label_grid_signs)
     std::size_t trimmed = 0;               ///< dropped beyond the end of the data (trim_unsupported)
@@ -45,6 +51,16 @@ struct Crossings {
 
     /// The crossing that a facet is dual to.
     const Crossing& of(FacetCorner corner) const { return crossings[corner.crossing()]; }
+    bool is_moved(Index edge) const {
+        return !moved.empty() && std::ranges::binary_search(moved, edge, {}, &MovedEdge::edge);
+    }
+    /// How far a crossing is off the place that its edge would have, in voxels.
+    Vec3 offset_of(const Crossing& crossing) const {
+        if (moved.empty()) return {0, 0, 0};
+        const auto it = std::ranges::lower_bound(moved, crossing.edge, {}, &MovedEdge::edge);
+        if (it == moved.end() || it->edge != crossing.edge) return {0, 0, 0};
+        return (1 - crossing.t) * it->ends[0] + crossing.t * it->ends[1];
+    }
     std::span<const Crossing> on_edge(Index e) const {
         return {crossings.data() + first[e], crossings.data() + first[e + 1]};
     }
@@ -53,6 +69,9 @@ struct Crossings {
 /// Every crossing that some sheet has, as candidates. O(grid points), parallel.
 Crossings find_crossings(const GridPoints& grid, const LocalSheets& sheets, const NormalSets& sets,
                          const RelationTest& related, double voxel_size, const CrossingOptions& options = {});
+
+/// From the lower end of an edge to its upper one, which must be there.
+Vec3 edge_vector(const GridPoints& grid, Index edge, double voxel_size);
 
 /// Where a crossing lies, relative to the octree's origin.
 Vec3 crossing_position(const GridPoints& grid, const Crossing& crossing, double voxel_size);

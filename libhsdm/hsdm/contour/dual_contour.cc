@@ -1,10 +1,10 @@
 #include "hsdm/contour/dual_contour.hh"
 
+#include "hsdm/contour/bar_lines.hh"
 #include "hsdm/contour/bevels.hh"
 #include "hsdm/contour/flat_corners.hh"
 #include "hsdm/contour/flat_facets.hh"
 #include "hsdm/contour/grid_signs.hh"
-#include "hsdm/contour/inner_tunnels.hh"
 #include "hsdm/contour/move_to_creases.hh"
 #include "hsdm/contour/reach.hh"
 #include "hsdm/contour/rims.hh"
@@ -298,10 +298,12 @@ std::vector<EdgeCollapse> build_facets(const Octree& octree, const OctreeLevel& 
     DualMesh dual;
     dual.voxel_size = h;
     dual.grid = build_grid_points(level);
+    result.grid_points_moved = move_to_bar_lines(dual.grid, sets, related, h);
     dual.crossings = [&] {
         LocalSheets local = group_local_sheets(dual.grid, sets, related, h);
         extend_grid_points(dual.grid, local, level);
         Crossings candidates = find_crossings(dual.grid, local, sets, related, h, options.crossing);
+        ask_points_at_bars(octree, level, dual.grid, candidates);
         std::vector<double> beliefs = beliefs_of_sheets(local, h);
         local = LocalSheets();
         return label_grid_signs(dual.grid, std::move(beliefs), sets, std::move(candidates), h,
@@ -332,7 +334,6 @@ std::vector<EdgeCollapse> build_facets(const Octree& octree, const OctreeLevel& 
     draw_in_rims(octree, level, sets, dual, vertices);
     separate_sides(dual, vertices.positions);
     std::vector<EdgeCollapse> to_corners = shared_corners(dual, vertices);
-    const std::vector<InnerTunnel> tunnels = find_inner_tunnels(dual, level, sets);
 
     const Midpoints midpoints(dual, sets, vertices);
     result.mesh = facets_of(dual, midpoints, vertices);
@@ -343,7 +344,6 @@ std::vector<EdgeCollapse> build_facets(const Octree& octree, const OctreeLevel& 
         result.mesh = facets_of(dual, midpoints, vertices);
         result.mesh.positions = std::move(vertices.positions);
     }
-    result.tunnels_opened = open_inner_tunnels(tunnels, result.mesh);
     result.mesh.origin = indices_below(result.mesh.vertex_count());
     result.classes = std::move(vertices.classes);
     result.voxel = std::move(vertices.voxel);
@@ -446,7 +446,7 @@ DualContour dual_contour(const Octree& octree, const OctreeLevel& level, const N
     } else {
         result.components[1] = result.components[0];
     }
-    if (result.splinters.count + result.tunnels_opened > 0) remove_isolated_vertices(result.mesh);
+    if (result.splinters.count > 0) remove_isolated_vertices(result.mesh);
     result.drawn_in = draw_in_spikes(octree, level, result.voxel, result.mesh);
     result.reached = reach_points(octree, level, result.voxel, far, result.mesh);
     // After all that decides topology by numbers of facets, so that it is the same either way.

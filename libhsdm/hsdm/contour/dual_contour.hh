@@ -38,19 +38,19 @@ struct DualContourOptions {
 };
 
 struct DualContour {
-    PolygonMesh mesh;                 ///< relative to the octree's origin; an oriented 2-manifold
-    std::vector<VertexClass> classes; ///< per vertex
-    std::vector<Index> voxel;         ///< per vertex, the occupied voxel it stands for
-    std::size_t beyond_crease = 0;    ///< crossings clipped where another sheet crosses theirs
-    std::size_t settled = 0;          ///< crossings dropped, restored or added so that signs agree
-    std::size_t trimmed = 0;          ///< crossings dropped beyond the end of the data
-    std::size_t tips = 0;             ///< pairs of crossings dropped
-    std::size_t webs_opened = 0;      ///< rows of links that changed partners (open_webs)
-    std::size_t tunnels_opened = 0; ///< pairs of vertices in one voxel that a tube joins (open_inner_tunnels)
-    std::size_t handles_cut = 0;    ///< rings of edges that no points speak for (cut_handles)
-    std::size_t clamped = 0;        ///< vertices kept in their voxels
-    std::size_t drawn_in = 0;       ///< vertices that stood far out from all points (draw_in_spikes)
-    std::size_t reached = 0;        ///< moves of vertices to points that stood out (reach_points)
+    PolygonMesh mesh;                  ///< relative to the octree's origin; an oriented 2-manifold
+    std::vector<VertexClass> classes;  ///< per vertex
+    std::vector<Index> voxel;          ///< per vertex, the occupied voxel it stands for
+    std::size_t grid_points_moved = 0; ///< to the lines of bars and bores (move_to_bar_lines)
+    std::size_t beyond_crease = 0;     ///< crossings clipped where another sheet crosses theirs
+    std::size_t settled = 0;           ///< crossings dropped, restored or added so that signs agree
+    std::size_t trimmed = 0;           ///< crossings dropped beyond the end of the data
+    std::size_t tips = 0;              ///< pairs of crossings dropped
+    std::size_t webs_opened = 0;       ///< rows of links that changed partners (open_webs)
+    std::size_t handles_cut = 0;       ///< rings of edges that no points speak for (cut_handles)
+    std::size_t clamped = 0;           ///< vertices kept in their voxels
+    std::size_t drawn_in = 0;          ///< vertices that stood far out from all points (draw_in_spikes)
+    std::size_t reached = 0;           ///< moves of vertices to points that stood out (reach_points)
     /// vertices merged into the vertex of the next voxel, which holds their corner (shared_corners)
     std::size_t corners_merged = 0;
     std::size_t flat_corners = 0; ///< vertices merged into others on creases (collapse_flat_corners)

@@ -24,6 +24,7 @@ struct DualMesh {
         for (unsigned k = 0; k < 3; ++k)
             p[k] = voxel_of(dual)[k] + (octant >> k & 1u ? 0 : 1); // of the edge's lower grid point
         p[axis] += crossing.t;
+        if (!crossings.moved.empty()) p += crossings.offset_of(crossing);
         return p * voxel_size;
     }
     /// Integer coordinates of the voxel whose chain of crossings the dual vertex is.

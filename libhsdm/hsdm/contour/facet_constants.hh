@@ -6,7 +6,7 @@
 
 #include <cstddef>
 
-// surrounding.hh: inner_tunnels.hh, witnesses.hh
+// surrounding.hh: bar_lines.hh, witnesses.hh
 namespace hsdm::surrounding {
 
 /// radians: between neighbouring directions of what lies all round an axis.
@@ -14,8 +14,7 @@ namespace hsdm::surrounding {
 inline constexpr double widest_gap = 2.6;
 
 /// voxels: to either side along the axis.
-/// Why: walls and gaps that decide wrongly, and what passes a voxel from corner to corner, are under a voxel
-/// wide.
+/// Why: walls and gaps that decide wrongly are under a voxel wide.
 inline constexpr double reach_along = 1;
 
 } // namespace hsdm::surrounding

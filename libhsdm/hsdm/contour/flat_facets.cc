@@ -2,6 +2,9 @@
 
 #include "hsdm/core/chunks.hh"
 #include "hsdm/mesh/collapse_edges.hh"
+#include "hsdm/mesh/doublets.hh"
+#include "hsdm/mesh/facet_links.hh"
+#include "hsdm/mesh/facet_unions.hh"
 #include "hsdm/mesh/manifold.hh"
 #include "hsdm/quality/topology.hh"
 
@@ -23,27 +26,97 @@ std::vector<Index> flat_facets(const Vec3& origin, const PolygonMesh& mesh) {
                             });
 }
 
-EdgeCollapse shortest_side(const PolygonMesh& mesh, std::span<const Index> facet) {
-    double least = Box::inf;
-    EdgeCollapse shortest{};
-    for (std::size_t i = 0; i < facet.size(); ++i) {
-        const Index from = facet[i], to = facet[(i + 1) % facet.size()];
-        const double length = (mesh.positions[to] - mesh.positions[from]).sqrnorm();
-        if (length < least) least = length, shortest = {from, to, mesh.positions[to]};
+EdgeCollapse side_of(const PolygonMesh& mesh, std::span<const Index> facet, std::size_t i) {
+    const Index to = facet[(i + 1) % facet.size()];
+    return {facet[i], to, mesh.positions[to]};
+}
+
+double squared_length(const PolygonMesh& mesh, const EdgeCollapse& side) {
+    return (mesh.positions[side.to] - mesh.positions[side.from]).sqrnorm();
+}
+
+/// The sides of a facet, the shortest first.
+std::vector<EdgeCollapse> sides_by_length(const PolygonMesh& mesh, Index f) {
+    std::vector<EdgeCollapse> sides;
+    for (std::size_t i = 0; i < mesh.facet(f).size(); ++i) sides.push_back(side_of(mesh, mesh.facet(f), i));
+    std::ranges::stable_sort(sides, {}, [&](const EdgeCollapse& side) { return squared_length(mesh, side); });
+    return sides;
+}
+
+std::size_t removed_vertices(const std::vector<std::uint8_t>& collapsed, PolygonMesh& mesh) {
+    const auto count = static_cast<std::size_t>(std::ranges::count(collapsed, 1));
+    if (count > 0) remove_isolated_vertices(mesh);
+    return count;
+}
+
+std::size_t collapse_shortest(const std::vector<Index>& flat, PolygonMesh& mesh) {
+    std::vector<EdgeCollapse> shortest;
+    for (const Index f : flat) shortest.push_back(sides_by_length(mesh, f)[0]);
+    return removed_vertices(collapse_edges(mesh, shortest), mesh);
+}
+
+/// The sides whose ends lie at one place.
+std::size_t collapse_empty(const Vec3& origin, const std::vector<Index>& flat, PolygonMesh& mesh) {
+    std::vector<EdgeCollapse> empty;
+    for (const Index f : flat)
+        for (const EdgeCollapse& side : sides_by_length(mesh, f))
+            if (mesh.positions[side.from] + origin == mesh.positions[side.to] + origin) empty.push_back(side);
+    return removed_vertices(collapse_empty_edges(mesh, empty), mesh);
+}
+
+/// The ring from the corner `from` round to the one before.
+std::vector<Index> ring_from(std::span<const Index> ring, Index from) {
+    std::vector<Index> turned(ring.begin(), ring.end());
+    std::ranges::rotate(turned, std::ranges::find(turned, from));
+    return turned;
+}
+
+/// Makes one facet of each without an area and the one across its longest side, whose shape stays: in one
+/// line with that side it gets the other corners. Not if a corner would be there twice.
+std::size_t unite_across_longest(const std::vector<Index>& flat, PolygonMesh& mesh) {
+    if (flat.empty()) return 0;
+    const FacetLinks links = link_facets(mesh);
+    FacetUnions unions(mesh);
+    for (const Index f : flat) {
+        const EdgeCollapse longest = sides_by_length(mesh, f).back();
+        const auto ring = mesh.facet(f);
+        const auto at = static_cast<Index>(std::ranges::find(ring, longest.from) - ring.begin());
+        const Index twin = links.twin[mesh.first[f] + at];
+        if (twin == no_index || !unions.is_free(f, links.facet[twin])) continue;
+        const Index beyond = links.facet[twin];
+        std::vector<Index> whole = ring_from(ring, longest.to);
+        const std::vector<Index> other = ring_from(mesh.facet(beyond), longest.from);
+        whole.insert(whole.end(), other.begin() + 1, other.end() - 1);
+        std::vector<Index> once = whole;
+        sort_unique(once);
+        if (once.size() == whole.size()) unions.unite(f, beyond, std::move(whole));
     }
-    return shortest;
+    return unions.apply(mesh);
 }
 
 } // namespace
 
 std::size_t collapse_flat_facets(const Vec3& origin, PolygonMesh& mesh) {
-    std::size_t count = 0;
-    for (std::size_t more = 1; more > 0; count += more) {
-        std::vector<EdgeCollapse> sides;
-        for (const Index f : flat_facets(origin, mesh)) sides.push_back(shortest_side(mesh, mesh.facet(f)));
-        const std::vector<std::uint8_t> collapsed = collapse_edges(mesh, sides);
-        more = static_cast<std::size_t>(std::ranges::count(collapsed, 1));
-        if (more > 0) remove_isolated_vertices(mesh);
+    std::size_t count = 0, forced = 0;
+    std::vector<Index> touched; // origins of vertices
+    for (;;) {
+        const std::vector<Index> flat = flat_facets(origin, mesh);
+        if (flat.empty()) break;
+        std::size_t more = collapse_shortest(flat, mesh);
+        if (more == 0) {
+            for (const Index f : flat)
+                for (const Index v : mesh.facet(f)) touched.push_back(mesh.origin[v]);
+            more = collapse_empty(origin, flat, mesh);
+            if (more == 0) more = unite_across_longest(flat, mesh);
+            forced += more;
+        }
+        if (more == 0) break;
+        count += more;
+    }
+    if (forced > 0) { // vertices may have lost their third facet
+        sort_unique(touched);
+        merge_doublets_at(mesh, [&](Index v) { return std::ranges::binary_search(touched, mesh.origin[v]); });
+        remove_isolated_vertices(mesh);
     }
     return count;
 }

@@ -22,6 +22,9 @@ struct GridPoints {
         MortonIndex index; ///< code -> number in the part
     };
     std::vector<Part> parts;
+    /// Per grid point, voxels: how far off its place it lies (move_to_bar_lines), or empty; those that
+    /// extend_grid_points adds lie at theirs.
+    std::vector<Vec3> moved_by;
 
     std::size_t size() const { return codes.size(); }
     /// Integer coordinates, in voxels, from -1 to 2^depth + 1: there is a margin of one voxel around the
@@ -32,6 +35,15 @@ struct GridPoints {
     }
     static MortonCode code(const VoxelCoord& c) {
         return morton_encode(VoxelCoord{c[0] + 1, c[1] + 1, c[2] + 1});
+    }
+    bool is_moved(Index grid_point) const {
+        return grid_point < moved_by.size() && moved_by[grid_point].sqrnorm() > 0;
+    }
+    /// Where it lies, in voxels.
+    Vec3 position(Index grid_point) const {
+        const VoxelCoord c = coord(grid_point);
+        const Vec3 place(c[0], c[1], c[2]);
+        return is_moved(grid_point) ? place + moved_by[grid_point] : place;
     }
     /// The grid point of a code, or no_index.
     Index find(MortonCode code) const {

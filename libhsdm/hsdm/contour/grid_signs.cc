@@ -5,6 +5,7 @@
 #include "hsdm/core/chunks.hh"
 #include "hsdm/core/constants.hh"
 #include "hsdm/core/large_vector.hh"
+#include "hsdm/mesh/area_vector.hh"
 
 #include <algorithm>
 #include <cmath>
@@ -288,15 +289,15 @@ private:
 
     /// Among the sets seen from an edge's ends the one nearest to its middle, with preference for those whose
     /// normals agree with the crossing's direction; no_index if neither end sees a set.
-    Index set_near(Index edge, bool leaving, const Vec3& middle) const {
+    Index set_near(Index edge, bool leaving, const Vec3& middle, const Vec3& way) const {
         std::tuple<bool, double, Index> best{true, impossible, no_index};
         SheetMembers members;
         for (Index end : {edge / 3, grid_.next[edge / 3][edge % 3]}) {
             members.gather(grid_.voxels[end], sets_);
             for (const SheetMember& m : members) {
                 const NormalSet& s = sets_.sets[m.set];
-                best = std::min(
-                    best, {(s.normal[edge % 3] > 0) != leaving, (s.centroid - middle).sqrnorm(), m.set});
+                best = std::min(best,
+                                {((s.normal | way) > 0) != leaving, (s.centroid - middle).sqrnorm(), m.set});
             }
         }
         return std::get<2>(best);
@@ -305,20 +306,16 @@ private:
     /// Invents a crossing: where the plane of the nearest set crosses the edge, clamped to what of it is
     /// beyond `least`. False if there is no set.
     bool invent(Index edge, bool leaving, double least, std::vector<Crossing>& out) const {
-        const unsigned axis = edge % 3;
-        const VoxelCoord c = grid_.coord(edge / 3);
-        Vec3 middle = Vec3(c[0], c[1], c[2]) * h_;
-        middle[axis] += 0.5 * h_;
-        const Index set = set_near(edge, leaving, middle);
+        const Vec3 way = edge_vector(grid_, edge, h_), middle = grid_.position(edge / 3) * h_ + 0.5 * way;
+        const Index set = set_near(edge, leaving, middle, way);
         if (set == no_index) return false;
         const NormalSet& s = sets_.sets[set];
         Crossing crossing{0.5, s.normal, edge, set, leaving, false};
-        if ((s.normal[axis] > 0) == leaving) {
-            const double rise = s.normal[axis] * h_;
+        const double rise = s.normal | way;
+        if ((rise > 0) == leaving) {
             crossing.t = rise == 0 ? 0.5 : 0.5 + (s.normal | (s.centroid - middle)) / rise;
         } else {
-            crossing.normal = Vec3(0, 0, 0);
-            crossing.normal[axis] = leaving ? 1 : -1;
+            crossing.normal = leaving ? unit(way) : -unit(way);
         }
         crossing.t = std::max(std::clamp(crossing.t, signs::end_gap, 1 - signs::end_gap), least);
         out.push_back(crossing);

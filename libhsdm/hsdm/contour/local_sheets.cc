@@ -302,9 +302,8 @@ LocalSheets group_local_sheets(const GridPoints& grid, const NormalSets& sets, c
                 grid_point.renumber();
                 grid_point.copy_sheets_of_members(result.sheets_of_members(i));
             }
-            const VoxelCoord c = grid.coord(i);
-            grid_point.measure(Vec3(c[0], c[1], c[2]) * voxel_size, sets, voxel_size);
-            grid_point.snap(voxel_size);
+            grid_point.measure(grid.position(i) * voxel_size, sets, voxel_size);
+            if (!grid.is_moved(i)) grid_point.snap(voxel_size); // else octants do not say where points are
             std::copy_n(grid_point.sheets.begin(), grid_point.sheet_count,
                         result.sheets.data() + result.first_sheet[i]);
         }
@@ -320,8 +319,12 @@ std::size_t extend_grid_points(GridPoints& grid, LocalSheets& sheets, const Octr
                 for (unsigned axis = 0; axis < 3; ++axis) {
                     const double rise = sheet.normal[axis] * level.voxel_size;
                     const bool is_inside = sheet.distance < 0;
+                    const double at_place = // of the grid point, wherever it lies
+                        grid.is_moved(i)
+                            ? sheet.distance - (sheet.normal | grid.moved_by[i]) * level.voxel_size
+                            : sheet.distance;
                     for (bool up : {true, false})
-                        if (is_inside != (sheet.distance + (up ? rise : -rise) < 0))
+                        if (is_inside != (at_place + (up ? rise : -rise) < 0))
                             grid_points.add(i, axis, up, missing);
                 }
     };

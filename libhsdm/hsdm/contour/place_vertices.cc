@@ -25,8 +25,10 @@ struct WeightedPlane {
 struct Problem {
     std::vector<WeightedPlane> planes;
     Vec3 mean; // mean of the crossings, which lie on the box's surface: inside the box
-    Vec3 lo;   // of the voxel
-    double size = 0;
+    Vec3 lo;   // of the box
+    Vec3 extent;
+    VoxelCoord voxel; // what the box is, if no crossing lies outside
+    double size = 0;  // of that
 };
 
 /// One normal per sheet that the planes belong to, at most three: each that of the plane which the others
@@ -118,7 +120,7 @@ double misfit(const Vec3& p, const Problem& problem) {
 bool is_inside(const Vec3& p, const Problem& problem, double slack = placement::margin) {
     for (unsigned k = 0; k < 3; ++k) {
         const double at = (p[k] - problem.lo[k]) / problem.size;
-        if (at < slack || at > 1 - slack) return false;
+        if (at < slack || at > problem.extent[k] / problem.size - slack) return false;
     }
     return true;
 }
@@ -126,7 +128,7 @@ bool is_inside(const Vec3& p, const Problem& problem, double slack = placement::
 Vec3 clamped(Vec3 p, const Problem& problem) {
     const double slack = placement::margin * problem.size;
     for (unsigned k = 0; k < 3; ++k)
-        p[k] = std::clamp(p[k], problem.lo[k] + slack, problem.lo[k] + problem.size - slack);
+        p[k] = std::clamp(p[k], problem.lo[k] + slack, problem.lo[k] + problem.extent[k] - slack);
     return p;
 }
 
@@ -137,7 +139,7 @@ Vec3 least_in_box(const Solution& solution, const Problem& problem) {
     Eigen::Vector3d lo, hi;
     for (unsigned k = 0; k < 3; ++k) {
         lo[k] = problem.lo[k] + slack - problem.mean[k];
-        hi[k] = problem.lo[k] + problem.size - slack - problem.mean[k];
+        hi[k] = problem.lo[k] + problem.extent[k] - slack - problem.mean[k];
     }
     Eigen::Vector3d best = Eigen::Vector3d::Zero();
     double least = std::numeric_limits<double>::infinity();
@@ -253,17 +255,32 @@ private:
         const auto corners = mesh_.duals.corners_of(dual);
         const CornerVoxel& at = mesh_.duals.voxels[dual];
         voxel_ = at.voxel;
+        problem_.voxel = at.coord;
         for (unsigned k = 0; k < 3; ++k) problem_.lo[k] = at.coord[k] * mesh_.voxel_size;
+        problem_.extent = Vec3(1, 1, 1) * mesh_.voxel_size;
         problem_.mean = Vec3(0, 0, 0);
+        bool is_moved = false;
         mesh_.duals.for_each_corner(dual, [&](FacetCorner corner) {
             const Vec3 p = mesh_.crossing_position_of(corner, dual);
             problem_.planes.push_back({mesh_.crossings.of(corner).normal, p, 1});
             by_crease_ |= mesh_.crossings.of(corner).by_crease;
+            is_moved |= mesh_.crossings.is_moved(mesh_.crossings.of(corner).edge);
             problem_.mean += p;
         });
+        if (is_moved) include_crossings();
         std::ranges::reverse(problem_.planes); // either order would do, and must not turn with the normals
         problem_.mean /= static_cast<double>(corners.size());
         return voxel_ == no_index || add_own_sets(corners);
+    }
+
+    /// Of voxels with a corner off its place.
+    void include_crossings() {
+        Vec3 hi = problem_.lo + problem_.extent;
+        for (const WeightedPlane& plane : problem_.planes) {
+            problem_.lo.minimize(plane.point);
+            hi.maximize(plane.point);
+        }
+        problem_.extent = hi - problem_.lo;
     }
 
     /// The voxel's own sets: those of the dual vertex's sheets, and those in a crease with them that cross no
@@ -368,7 +385,7 @@ private:
     VoxelCoord step_to(const Vec3& position) const {
         VoxelCoord step;
         for (unsigned k = 0; k < 3; ++k) {
-            const double at = (position[k] - problem_.lo[k]) / problem_.size;
+            const double at = (position[k] - problem_.voxel[k] * problem_.size) / problem_.size;
             step[k] = (at > 1 - placement::margin) - (at < placement::margin);
         }
         return step;
@@ -379,7 +396,7 @@ private:
     bool is_crossed(const VoxelCoord& step, unsigned way) const {
         VoxelCoord beside;
         for (unsigned k = 0; k < 3; ++k) {
-            beside[k] = static_cast<int>(std::lround(problem_.lo[k] / problem_.size));
+            beside[k] = problem_.voxel[k];
             if (!(way >> k & 1u)) continue;
             if (step[k] == 0) return false;
             beside[k] += step[k];

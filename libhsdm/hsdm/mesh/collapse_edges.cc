@@ -30,11 +30,20 @@ bool is_simple(RingVertices ring) {
     return std::adjacent_find(ring.begin(), ring.end()) == ring.end();
 }
 
+/// What is asked of the facets round an edge.
+enum class Asked : std::uint8_t {
+    shape, ///< that they keep an area, their sides and their direction, and vertices a third facet
+    facets ///< that vertices keep a second one
+};
+
 /// The facets around the edges to collapse, as rings that can be changed.
 class Patch {
 public:
-    Patch(PolygonMesh& mesh, std::span<const EdgeCollapse> edges)
-        : mesh_(mesh), slot_(mesh.vertex_count(), no_index), facet_count_(mesh.vertex_count(), 0) {
+    Patch(PolygonMesh& mesh, std::span<const EdgeCollapse> edges, Asked asked)
+        : mesh_(mesh),
+          asked_(asked),
+          slot_(mesh.vertex_count(), no_index),
+          facet_count_(mesh.vertex_count(), 0) {
         for (const EdgeCollapse& edge : edges)
             for (Index v : {edge.from, edge.to})
                 if (slot_[v] == no_index) {
@@ -59,7 +68,7 @@ public:
         gather(edge.from, to);
         const Vec3 placed = mesh_.positions[to];
         if (to == edge.to) mesh_.positions[to] = edge.position;
-        if (unite_flat(to) && keeps_facets(to) && keeps_thirds(edge.from)) {
+        if ((asked_ == Asked::facets || (unite_flat(to) && keeps_facets(to))) && keeps_counts(edge.from)) {
             commit();
             stand_in_[slot_[edge.from]] = to;
             return true;
@@ -238,15 +247,16 @@ private:
     }
 
     /// Updates the facet count of each vertex; false, and no update, if a vertex other than `gone` would lose
-    /// its third facet.
-    bool keeps_thirds(Index gone) {
-        const auto has_three = [&](Index v) { return v == gone || facet_count_[v] >= 3; };
-        std::vector<Index> with_three;
+    /// its third facet, or its second.
+    bool keeps_counts(Index gone) {
+        const int least = asked_ == Asked::shape ? 3 : 2;
+        const auto has_enough = [&](Index v) { return v == gone || facet_count_[v] >= least; };
+        std::vector<Index> with_enough;
         for (const Change& change : changes_)
             std::copy_if(rings_[change.ring].begin(), rings_[change.ring].end(),
-                         std::back_inserter(with_three), has_three);
+                         std::back_inserter(with_enough), has_enough);
         count_changes(-1, 1);
-        if (std::all_of(with_three.begin(), with_three.end(), has_three)) return true;
+        if (std::all_of(with_enough.begin(), with_enough.end(), has_enough)) return true;
         count_changes(1, -1);
         return false;
     }
@@ -268,6 +278,7 @@ private:
     }
 
     PolygonMesh& mesh_;
+    Asked asked_;
     std::vector<Index> slot_; // per vertex that is an end of an edge to collapse, its place in
     std::vector<std::vector<Index>> rings_at_; // per such vertex, the rings around it
     std::vector<Index> stand_in_;              // per such vertex, the vertex that replaces it
@@ -277,12 +288,10 @@ private:
     std::vector<Change> changes_;  // of the current collapse
 };
 
-} // namespace
-
-std::vector<std::uint8_t> collapse_edges(PolygonMesh& mesh, std::span<const EdgeCollapse> edges) {
+std::vector<std::uint8_t> collapse(PolygonMesh& mesh, std::span<const EdgeCollapse> edges, Asked asked) {
     std::vector<std::uint8_t> collapsed(edges.size(), 0);
     if (edges.empty()) return collapsed;
-    Patch patch(mesh, edges);
+    Patch patch(mesh, edges, asked);
     bool changed = true, any = false;
     for (int round = 0; changed && round < enough_rounds; ++round) {
         changed = false;
@@ -291,6 +300,16 @@ std::vector<std::uint8_t> collapse_edges(PolygonMesh& mesh, std::span<const Edge
     }
     if (any) patch.write();
     return collapsed;
+}
+
+} // namespace
+
+std::vector<std::uint8_t> collapse_edges(PolygonMesh& mesh, std::span<const EdgeCollapse> edges) {
+    return collapse(mesh, edges, Asked::shape);
+}
+
+std::vector<std::uint8_t> collapse_empty_edges(PolygonMesh& mesh, std::span<const EdgeCollapse> edges) {
+    return collapse(mesh, edges, Asked::facets);
 }
 
 } // namespace hsdm

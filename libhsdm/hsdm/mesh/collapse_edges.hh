@@ -24,4 +24,8 @@ struct EdgeCollapse {
 /// Returns per edge whether it was collapsed. O(corners of the mesh), nothing if there are no edges.
 std::vector<std::uint8_t> collapse_edges(PolygonMesh& mesh, std::span<const EdgeCollapse> edges);
 
+/// The same of edges whose ends lie at one place, so that no facet changes its shape: areas, sides and
+/// directions are not asked, and a vertex keeps two facets.
+std::vector<std::uint8_t> collapse_empty_edges(PolygonMesh& mesh, std::span<const EdgeCollapse> edges);
+
 } // namespace hsdm

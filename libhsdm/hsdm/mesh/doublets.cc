@@ -12,15 +12,21 @@
 namespace hsdm {
 namespace {
 
-std::size_t merge_once(PolygonMesh& mesh, const std::function<bool(Index)>& expendable) {
+/// Onto each other.
+bool are_folded(const PolygonMesh& mesh, Index f, Index g) {
+    const Vec3 one = unit(area_vector(mesh, mesh.facet(f))), other = unit(area_vector(mesh, mesh.facet(g)));
+    return (one | other) <= angles::opposed;
+}
+
+enum class Folded : bool { stay, go };
+
+std::size_t merge_once(PolygonMesh& mesh, const std::function<bool(Index)>& expendable, Folded folded) {
     const VertexFacets at = facets_at_vertices(mesh);
     FacetUnions unions(mesh);
     for (Index v = 0; v < mesh.vertex_count(); ++v) {
         const auto [f, g] = at.facets[v];
         if (at.count[v] != 2 || !unions.is_free(f, g)) continue;
-        const Vec3 one = unit(area_vector(mesh, mesh.facet(f))),
-                   other = unit(area_vector(mesh, mesh.facet(g)));
-        if (!expendable(v) && (one | other) > angles::opposed) continue;
+        if (!expendable(v) && (folded == Folded::stay || !are_folded(mesh, f, g))) continue;
         UnitedFacets whole = united(mesh, at, v);
         // Beside another vertex of only two facets the union might be the reverse of a third facet.
         if (whole.ring.size() < 3
@@ -109,7 +115,14 @@ std::size_t drop_straight_vertices(double tolerance, PolygonMesh& mesh) {
 
 std::size_t merge_doublets(PolygonMesh& mesh, const std::function<bool(Index)>& expendable) {
     std::size_t merged = 0;
-    while (const std::size_t count = merge_once(mesh, expendable)) merged += count; // facets get fewer
+    while (const std::size_t count = merge_once(mesh, expendable, Folded::go))
+        merged += count; // facets get fewer
+    return merged;
+}
+
+std::size_t merge_doublets_at(PolygonMesh& mesh, const std::function<bool(Index)>& there) {
+    std::size_t merged = 0;
+    while (const std::size_t count = merge_once(mesh, there, Folded::stay)) merged += count;
     return merged;
 }
 

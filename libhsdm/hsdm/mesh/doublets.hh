@@ -14,6 +14,9 @@ namespace hsdm {
 /// merger leaves another doublet.
 std::size_t merge_doublets(PolygonMesh& mesh, const std::function<bool(Index)>& expendable);
 
+/// The same round the vertices `there` alone, folded or not.
+std::size_t merge_doublets_at(PolygonMesh& mesh, const std::function<bool(Index)>& there);
+
 /// Takes inner vertices that have no third facet out of both, where they lie on the straight way between the
 /// two vertices next to them, off it by `tolerance` (the mesh's units) at most: cut into triangles, the two
 /// facets would have one in common, of hardly any area, and whether they pass through each other there is a

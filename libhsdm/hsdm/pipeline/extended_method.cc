@@ -63,7 +63,7 @@ void note_counts(const DualContour& facets, Report& report) {
     report.rejected["crossings_beyond_data"] = facets.trimmed;
     report.rejected["crossings_at_tips"] = 2 * facets.tips;
     report.rejected["webs_opened"] = facets.webs_opened;
-    report.rejected["tunnels_opened"] = facets.tunnels_opened;
+    report.rejected["grid_points_moved"] = facets.grid_points_moved;
     report.rejected["handles_cut"] = facets.handles_cut;
     report.rejected["vertices_clamped"] = facets.clamped;
     report.rejected["vertices_drawn_in"] = facets.drawn_in;
