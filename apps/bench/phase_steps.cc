@@ -2,6 +2,7 @@
 
 #include "benchmarks.hh"
 
+#include "hsdm/contour/bar_lines.hh"
 #include "hsdm/contour/dual_contour.hh"
 #include "hsdm/contour/flat_facets.hh"
 #include "hsdm/contour/grid_signs.hh"
@@ -133,12 +134,16 @@ void part_sets(Work& w) {
 void make_grid(Work& w) {
     w.corners = build_grid_points(w.level);
 }
+void move_points(Work& w) {
+    move_to_bar_lines(w.dual.grid, w.sets, relation_of(w), w.level.voxel_size);
+}
 void make_sheets(Work& w) {
     w.sheets = group_local_sheets(w.dual.grid, w.sets, relation_of(w), w.level.voxel_size);
     extend_grid_points(w.dual.grid, w.sheets, w.level);
 }
 void make_crossings(Work& w) {
     w.candidates = find_crossings(w.dual.grid, w.sheets, w.sets, relation_of(w), w.level.voxel_size);
+    ask_points_at_bars(w.octree, w.level, w.dual.grid, w.candidates);
 }
 void make_signs(Work& w) {
     const double h = w.level.voxel_size;
@@ -284,12 +289,15 @@ std::vector<Step> steps_of_contour() {
     return {
         {"grid points", "build_grid_points", [](Work& w) { w.corners = {}; }, make_grid,
          [](const Work& w) { return bytes_of(w.level.codes) + bytes_of(w.corners); }},
+        {"bars", "move_to_bar_lines", [](Work& w) { w.dual = {}, w.dual.grid = w.corners; }, move_points,
+         [](const Work& w) { return bytes_of(w.dual.grid) + bytes_of(w.sets.sets, w.sets.first); }},
         {"sheets", "group_local_sheets, extend_grid_points",
-         [](Work& w) { w.sheets = {}, w.dual = {}, w.dual.grid = w.corners; }, make_sheets,
+         [](Work& w) { w.sheets = {}, w.dual.grid = w.corners, move_points(w); }, make_sheets,
          [](const Work& w) {
              return bytes_of(w.dual.grid) + bytes_of(w.sets.sets, w.sets.first) + bytes_of(w.sheets);
          }},
-        {"crossings", "find_crossings", [](Work& w) { w.candidates = {}; }, make_crossings,
+        {"crossings", "find_crossings, ask_points_at_bars", [](Work& w) { w.candidates = {}; },
+         make_crossings,
          [](const Work& w) {
              return bytes_of(w.dual.grid) + bytes_of(w.sheets) + bytes_of(w.sets.sets)
                     + bytes_of(w.candidates);

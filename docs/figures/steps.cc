@@ -1,5 +1,6 @@
 #include "steps.hh"
 
+#include "hsdm/contour/bar_lines.hh"
 #include "hsdm/contour/dual_contour.hh"
 #include "hsdm/contour/patches.hh"
 #include "hsdm/contour/trim_crossings.hh"
@@ -25,9 +26,11 @@ Steps::Steps(const PointCloud& cloud, int depth)
     related = RelationTest({}, level.voxel_size, sets);
     voxel_size = level.voxel_size;
     grid = build_grid_points(level);
+    move_to_bar_lines(grid, sets, related, h());
     local = group_local_sheets(grid, sets, related, h());
     extend_grid_points(grid, local, level);
     candidates = find_crossings(grid, local, sets, related, h());
+    ask_points_at_bars(octree, level, grid, candidates);
     labelled = label_grid_signs(grid, local, sets, candidates, h());
     crossings = labelled;
     links = pair_crossings(grid, crossings, sets, related);

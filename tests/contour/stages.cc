@@ -1,5 +1,6 @@
 #include "contour/stages.hh"
 
+#include "hsdm/contour/bar_lines.hh"
 #include "hsdm/contour/grid_signs.hh"
 #include "hsdm/contour/trim_crossings.hh"
 
@@ -25,10 +26,12 @@ Stages::Stages(const PointCloud& cloud, int depth, double cube_extent)
       related({}, level.voxel_size) {
     voxel_size = level.voxel_size;
     grid = build_grid_points(level);
+    move_to_bar_lines(grid, sets, related, h());
     LocalSheets local = group_local_sheets(grid, sets, related, h());
     extend_grid_points(grid, local, level);
-    crossings = label_grid_signs(grid, beliefs_of_sheets(local, h()), sets,
-                                 find_crossings(grid, local, sets, related, h()), h());
+    crossings = find_crossings(grid, local, sets, related, h());
+    ask_points_at_bars(octree, level, grid, crossings);
+    crossings = label_grid_signs(grid, beliefs_of_sheets(local, h()), sets, std::move(crossings), h());
     pair();
     place();
 }

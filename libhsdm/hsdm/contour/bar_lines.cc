@@ -13,6 +13,7 @@
 #include <iterator>
 #include <optional>
 #include <tuple>
+#include <utility>
 
 namespace hsdm {
 namespace {
@@ -112,10 +113,17 @@ private:
             for (const NormalSet* s : along_) angles_.push_back(across.angle_of(s->normal));
             if (wide_gaps(angles_) > 0) continue; // nothing goes all round, as in a wall
             const auto bar = find_round(face, along, true), bore = find_round(face, along, false);
-            if (bar && bore) return bar->radius < bore->radius ? bar : bore;
+            if (bar && bore) return narrower(*bar, *bore);
             if (bar || bore) return bar ? bar : bore;
         }
         return {};
+    }
+
+    static const Passage& narrower(const Passage& one, const Passage& other) {
+        const auto order = [](const Passage& p) {
+            return std::tuple(p.radius, p.middle[0], p.middle[1], p.middle[2]);
+        };
+        return order(one) < order(other) ? one : other; // turned normals swap them
     }
 
     /// Of the sets with a partner: do they lie all round a place of the face, and all face away from it, or
@@ -161,9 +169,11 @@ private:
             b += weight * (s->normal | (s->centroid / h_ - lowest)) * row;
         }
         const Eigen::Vector3d x = a.ldlt().solve(b);
-        if (!(x[0] > 0 && x[0] < 1 && x[1] > 0 && x[1] < 1)) return {};
+        const double slack = placement::margin; // on an edge of the grid rounding must not leave it out
+        for (const int k : {0, 1})
+            if (!(x[k] > -slack && x[k] < 1 + slack)) return {};
         Vec3 middle = lowest;
-        middle[u] += x[0], middle[w] += x[1];
+        middle[u] += std::clamp(x[0], 0.0, 1.0), middle[w] += std::clamp(x[1], 0.0, 1.0);
         return Passage{middle, along, std::abs(x[2])};
     }
 
@@ -262,30 +272,33 @@ std::size_t move_to(std::vector<Claim> claims, GridPoints& grid) {
             return std::tuple(point, claim.kind, distance, p[0], p[1], p[2]);
         }
     };
-    std::size_t moved = 0;
+    std::vector<Index> taken; // ascending
     for (int round = 0; round < repeats::twice; ++round) {
         std::vector<Wanted> wanted;
         for (const Claim& claim : claims)
             for (std::size_t k = 0; k < claim.choices(); ++k) {
                 const Index point = grid.find(GridPoints::code(claim.grid_points[k]));
                 const double distance = squared_distance(claim.place, claim.grid_points[k]);
-                if (point == no_index || grid.is_moved(point) || distance > 1) continue;
+                if (point == no_index || distance > 1 || std::ranges::binary_search(taken, point)) continue;
                 wanted.push_back({point, distance, claim});
                 break;
             }
         std::ranges::sort(wanted, {}, &Wanted::order);
         claims.clear();
+        if (!wanted.empty() && taken.empty()) resize_large(grid.moved_by, grid.size(), Vec3(0, 0, 0));
+        Index last = no_index;
         for (const Wanted& w : wanted) {
-            if (grid.is_moved(w.point)) {
+            if (std::exchange(last, w.point) == w.point) {
                 claims.push_back(w.claim);
                 continue;
             }
-            if (moved++ == 0) resize_large(grid.moved_by, grid.size(), Vec3(0, 0, 0));
             const VoxelCoord at = grid.coord(w.point);
             grid.moved_by[w.point] = w.claim.place - Vec3(at[0], at[1], at[2]);
+            taken.push_back(w.point);
         }
+        std::ranges::sort(taken);
     }
-    return moved;
+    return taken.size();
 }
 
 } // namespace

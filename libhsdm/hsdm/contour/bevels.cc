@@ -56,6 +56,8 @@ public:
     bool leads_over_one(FacetSide side, FacetSide twin) const {
         const Crossing &x = crossings_.of(side), &y = crossings_.of(twin);
         if ((x.normal | y.normal) > angles::halfway) return false;
+        if (crossings_.is_moved(x.edge) || crossings_.is_moved(y.edge))
+            return false; // their face is not flat
         const LinkFace face(grid_, crossings_, side);
         return is_cut_off_round(x.edge, x, y, face) || is_cut_off_round(y.edge, x, y, face);
     }

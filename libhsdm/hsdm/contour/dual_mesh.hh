@@ -27,6 +27,20 @@ struct DualMesh {
         if (!crossings.moved.empty()) p += crossings.offset_of(crossing);
         return p * voxel_size;
     }
+    /// Is a grid point round one of the dual vertex's crossings off its place (move_to_bar_lines)?
+    bool is_moved(Index dual) const {
+        if (crossings.moved.empty()) return false;
+        const auto corners = duals.corners_of(dual);
+        return std::ranges::any_of(
+            corners, [&](FacetCorner corner) { return crossings.is_moved(crossings.of(corner).edge); });
+    }
+    /// Grows the bounds of such a dual vertex's voxel so that they hold its crossings.
+    void include_crossings(Index dual, Vec3& lo, Vec3& hi) const {
+        duals.for_each_corner(dual, [&](FacetCorner corner) {
+            const Vec3 p = crossing_position_of(corner, dual);
+            lo.minimize(p), hi.maximize(p);
+        });
+    }
     /// Integer coordinates of the voxel whose chain of crossings the dual vertex is.
     const VoxelCoord& voxel_of(Index dual) const { return duals.voxels[dual].coord; }
 };

@@ -216,9 +216,10 @@ private:
     /// Do the planes of two corners meet near the voxel? Then they make the tip of a wedge, not a thin part.
     bool meet_nearby(FacetCorner a, FacetCorner b) const {
         const VoxelCoord c = CornerVoxel(grid_, crossings_, a).coord;
-        const Vec3 centre = Vec3(c[0], c[1], c[2]) + Vec3(0.5, 0.5, 0.5);
-        const double k = of(a).normal | (crossing_position(grid_, of(a), 1) - centre);
-        const double l = of(b).normal | (crossing_position(grid_, of(b), 1) - centre);
+        const Vec3 at_a = crossing_position(grid_, of(a), 1), at_b = crossing_position(grid_, of(b), 1);
+        const bool is_moved = crossings_.is_moved(of(a).edge) || crossings_.is_moved(of(b).edge);
+        const Vec3 centre = is_moved ? 0.5 * (at_a + at_b) : Vec3(c[0], c[1], c[2]) + Vec3(0.5, 0.5, 0.5);
+        const double k = of(a).normal | (at_a - centre), l = of(b).normal | (at_b - centre);
         const double cosine = of(a).normal | of(b).normal;
         return k * k + l * l - 2 * cosine * k * l < sheets::beside * sheets::beside * (1 - cosine * cosine);
     }

@@ -9,6 +9,7 @@
 #include "hsdm/quality/topology.hh"
 
 #include <algorithm>
+#include <tuple>
 
 namespace hsdm {
 namespace {
@@ -26,9 +27,10 @@ std::vector<Index> flat_facets(const Vec3& origin, const PolygonMesh& mesh) {
                             });
 }
 
+/// Whichever way round the facet is.
 EdgeCollapse side_of(const PolygonMesh& mesh, std::span<const Index> facet, std::size_t i) {
-    const Index to = facet[(i + 1) % facet.size()];
-    return {facet[i], to, mesh.positions[to]};
+    const auto [to, from] = std::minmax(facet[i], facet[(i + 1) % facet.size()]);
+    return {from, to, mesh.positions[to]};
 }
 
 double squared_length(const PolygonMesh& mesh, const EdgeCollapse& side) {
@@ -39,7 +41,9 @@ double squared_length(const PolygonMesh& mesh, const EdgeCollapse& side) {
 std::vector<EdgeCollapse> sides_by_length(const PolygonMesh& mesh, Index f) {
     std::vector<EdgeCollapse> sides;
     for (std::size_t i = 0; i < mesh.facet(f).size(); ++i) sides.push_back(side_of(mesh, mesh.facet(f), i));
-    std::ranges::stable_sort(sides, {}, [&](const EdgeCollapse& side) { return squared_length(mesh, side); });
+    std::ranges::sort(sides, {}, [&](const EdgeCollapse& side) {
+        return std::tuple(squared_length(mesh, side), side.to, side.from);
+    });
     return sides;
 }
 
@@ -80,16 +84,18 @@ std::size_t unite_across_longest(const std::vector<Index>& flat, PolygonMesh& me
     for (const Index f : flat) {
         const EdgeCollapse longest = sides_by_length(mesh, f).back();
         const auto ring = mesh.facet(f);
-        const auto at = static_cast<Index>(std::ranges::find(ring, longest.from) - ring.begin());
-        const Index twin = links.twin[mesh.first[f] + at];
+        Index side = mesh.first[f];
+        const auto next = [&] { return mesh.corners[next_side(mesh, f, side)]; };
+        while (std::minmax(mesh.corners[side], next()) != std::minmax(longest.from, longest.to)) ++side;
+        const Index twin = links.twin[side];
         if (twin == no_index || !unions.is_free(f, links.facet[twin])) continue;
         const Index beyond = links.facet[twin];
-        std::vector<Index> whole = ring_from(ring, longest.to);
-        const std::vector<Index> other = ring_from(mesh.facet(beyond), longest.from);
+        std::vector<Index> whole = ring_from(ring, next());
+        const std::vector<Index> other = ring_from(mesh.facet(beyond), mesh.corners[side]);
         whole.insert(whole.end(), other.begin() + 1, other.end() - 1);
         std::vector<Index> once = whole;
         sort_unique(once);
-        if (once.size() == whole.size()) unions.unite(f, beyond, std::move(whole));
+        if (once.size() == whole.size()) unions.unite(f, beyond, ring_from(whole, once[0]));
     }
     return unions.apply(mesh);
 }
@@ -97,26 +103,24 @@ std::size_t unite_across_longest(const std::vector<Index>& flat, PolygonMesh& me
 } // namespace
 
 std::size_t collapse_flat_facets(const Vec3& origin, PolygonMesh& mesh) {
-    std::size_t count = 0, forced = 0;
-    std::vector<Index> touched; // origins of vertices
-    for (;;) {
+    std::size_t count = 0;
+    std::vector<Index> touched; // origins of vertices that may lose their third facet; ascending
+    const auto merge = [&] {
+        const std::size_t merged = merge_doublets_at(
+            mesh, [&](Index v) { return std::ranges::binary_search(touched, mesh.origin[v]); });
+        if (merged > 0) remove_isolated_vertices(mesh);
+        return merged;
+    };
+    for (std::size_t more = 1; more > 0; count += more) {
         const std::vector<Index> flat = flat_facets(origin, mesh);
-        if (flat.empty()) break;
-        std::size_t more = collapse_shortest(flat, mesh);
-        if (more == 0) {
-            for (const Index f : flat)
-                for (const Index v : mesh.facet(f)) touched.push_back(mesh.origin[v]);
-            more = collapse_empty(origin, flat, mesh);
-            if (more == 0) more = unite_across_longest(flat, mesh);
-            forced += more;
-        }
-        if (more == 0) break;
-        count += more;
-    }
-    if (forced > 0) { // vertices may have lost their third facet
+        more = collapse_shortest(flat, mesh);
+        if (more > 0) continue;
+        for (const Index f : flat)
+            for (const Index v : mesh.facet(f)) touched.push_back(mesh.origin[v]);
         sort_unique(touched);
-        merge_doublets_at(mesh, [&](Index v) { return std::ranges::binary_search(touched, mesh.origin[v]); });
-        remove_isolated_vertices(mesh);
+        more = collapse_empty(origin, flat, mesh);
+        if (more == 0) more = unite_across_longest(flat, mesh);
+        if (more == 0 && !touched.empty()) more = merge();
     }
     return count;
 }

@@ -259,28 +259,21 @@ private:
         for (unsigned k = 0; k < 3; ++k) problem_.lo[k] = at.coord[k] * mesh_.voxel_size;
         problem_.extent = Vec3(1, 1, 1) * mesh_.voxel_size;
         problem_.mean = Vec3(0, 0, 0);
-        bool is_moved = false;
         mesh_.duals.for_each_corner(dual, [&](FacetCorner corner) {
             const Vec3 p = mesh_.crossing_position_of(corner, dual);
             problem_.planes.push_back({mesh_.crossings.of(corner).normal, p, 1});
             by_crease_ |= mesh_.crossings.of(corner).by_crease;
-            is_moved |= mesh_.crossings.is_moved(mesh_.crossings.of(corner).edge);
             problem_.mean += p;
         });
-        if (is_moved) include_crossings();
+        is_moved_ = mesh_.is_moved(dual);
+        if (is_moved_) {
+            Vec3 hi = problem_.lo + problem_.extent;
+            mesh_.include_crossings(dual, problem_.lo, hi);
+            problem_.extent = hi - problem_.lo;
+        }
         std::ranges::reverse(problem_.planes); // either order would do, and must not turn with the normals
         problem_.mean /= static_cast<double>(corners.size());
         return voxel_ == no_index || add_own_sets(corners);
-    }
-
-    /// Of voxels with a corner off its place.
-    void include_crossings() {
-        Vec3 hi = problem_.lo + problem_.extent;
-        for (const WeightedPlane& plane : problem_.planes) {
-            problem_.lo.minimize(plane.point);
-            hi.maximize(plane.point);
-        }
-        problem_.extent = hi - problem_.lo;
     }
 
     /// The voxel's own sets: those of the dual vertex's sheets, and those in a crease with them that cross no
@@ -357,7 +350,7 @@ private:
     /// voxel, it has no vertex on them. Beyond an edge or corner of the voxel this must hold for all voxels
     /// between.
     bool may_leave(const Vec3& position) const {
-        if (!is_inside(position, problem_, -placement::farthest_out)) return false;
+        if (!is_inside(position, problem_, -placement::farthest_out) || !is_near(position)) return false;
         const VoxelCoord step = step_to(position);
         for (unsigned way = 1; way < 8; ++way)
             if (is_crossed(step, way)) return false;
@@ -374,11 +367,20 @@ private:
     /// Records a corner outside, which the vertex of another voxel may take over (shared_corners).
     void note_corner(Index dual, const Solution& solution, const SheetNormals& faces) {
         if (!meet(3, solution, solution.position, placement::farthest_out, placement::clear_corner)) return;
-        if (faces.count < 3) return;
+        if (faces.count < 3 || !is_near(solution.position)) return;
         const VoxelCoord step = step_to(solution.position);
         unsigned crossed = 0;
         for (unsigned way = 1; way < 8; ++way) crossed |= unsigned{is_crossed(step, way)} << way;
         beyond.push_back({dual, solution.position, faces.normals, step, static_cast<std::uint8_t>(crossed)});
+    }
+
+    /// Less than a voxel away from this one? Only boxes that crossings made larger reach farther.
+    bool is_near(const Vec3& position) const {
+        for (unsigned k = 0; is_moved_ && k < 3; ++k) {
+            const double at = position[k] / problem_.size - problem_.voxel[k];
+            if (!(at > -1 && at < 2)) return false;
+        }
+        return true;
     }
 
     /// Step from this voxel to the one that holds a position less than a voxel away.
@@ -450,6 +452,7 @@ private:
     std::vector<CreaseSample> samples_;
     std::vector<std::uint8_t> face_;
     bool by_crease_ = false; // is a crossing on one face of a blunt crease?
+    bool is_moved_ = false;  // is a corner of the voxel off its place?
     Index voxel_ = no_index;
 };
 

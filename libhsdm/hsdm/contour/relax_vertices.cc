@@ -20,7 +20,7 @@ Vec3 within_voxel(const DualMesh& mesh, Index dual, const Vec3& from, const Vec3
     const VoxelCoord& voxel = mesh.voxel_of(dual);
     const double h = mesh.voxel_size;
     const Vec3 way = to - from;
-    std::array<double, 3> least, most;
+    Vec3 least, most;
     bool stays = true; // as nearly always, though which bounds it moves towards is hard to guess
     for (unsigned k = 0; k < 3; ++k) {
         least[k] = (voxel[k] + placement::margin) * h;
@@ -29,6 +29,7 @@ Vec3 within_voxel(const DualMesh& mesh, Index dual, const Vec3& from, const Vec3
         stays &= to[k] <= most[k];
     }
     if (stays) return from + way;
+    if (mesh.is_moved(dual)) mesh.include_crossings(dual, least, most);
     double share = 1;
     for (unsigned k = 0; k < 3; ++k) {
         const double lo = least[k], hi = most[k];

@@ -68,12 +68,21 @@ private:
     /// How far a point lies beyond the faces of a dual vertex's voxel, in voxels; 0 inside.
     double outside(Index dual, const Vec3& point) const {
         const VoxelCoord voxel = mesh_.voxel_of(dual);
+        Vec3 lo(0, 0, 0), hi(1, 1, 1), at;
+        for (unsigned k = 0; k < 3; ++k) at[k] = point[k] / mesh_.voxel_size - voxel[k];
+        if (mesh_.is_moved(dual)) include_crossings(dual, lo, hi);
         double most = 0;
-        for (unsigned k = 0; k < 3; ++k) {
-            const double at = point[k] / mesh_.voxel_size - voxel[k];
-            most = std::max({most, -at, at - 1});
-        }
+        for (unsigned k = 0; k < 3; ++k) most = std::max({most, lo[k] - at[k], at[k] - hi[k]});
         return most;
+    }
+
+    /// In voxels, from the voxel's lowest corner.
+    void include_crossings(Index dual, Vec3& lo, Vec3& hi) const {
+        const VoxelCoord voxel = mesh_.voxel_of(dual);
+        const Vec3 corner = Vec3(voxel[0], voxel[1], voxel[2]) * mesh_.voxel_size;
+        Vec3 least = corner + lo * mesh_.voxel_size, most = corner + hi * mesh_.voxel_size;
+        mesh_.include_crossings(dual, least, most);
+        lo = (least - corner) / mesh_.voxel_size, hi = (most - corner) / mesh_.voxel_size;
     }
 
     const DualMesh& mesh_;
