@@ -427,6 +427,10 @@ DualContour dual_contour(const Octree& octree, const OctreeLevel& level, const N
     if (options.fill) {
         FillHolesOptions holes = options.holes;
         holes.max_diameter *= h;
+        holes.stays_open = [&](std::span<const Index> loop) {
+            return diameter_of(result.mesh, loop) > options.widest_free * h
+                   && missing_points(octree, level, result.voxel, result.mesh, loop) > holes::least_missing;
+        };
         if (!result.links) result.links = link_facets(result.mesh);
         result.holes = fill_holes(result.mesh, *result.links, holes);
         if (!options.part.is_part())

@@ -21,12 +21,6 @@ bool is_lone_facet(const PolygonMesh& mesh, std::span<const Index> facets) {
            && mesh.facet(facets[0]).size() == facets.size();
 }
 
-double diameter(const PolygonMesh& mesh, std::span<const Index> loop) {
-    Box box;
-    for (Index v : loop) box.add(mesh.positions[v]);
-    return box.diagonal();
-}
-
 /// Finds which side without twin follows which around a hole: the side after one from a to b ends in a.
 class HoleTracer {
 public:
@@ -183,6 +177,12 @@ BoundaryLoops boundary_loops(const PolygonMesh& mesh) {
     return boundary_loops(mesh, link_facets(mesh));
 }
 
+double diameter_of(const PolygonMesh& mesh, std::span<const Index> loop) {
+    Box box;
+    for (Index v : loop) box.add(mesh.positions[v]);
+    return box.diagonal();
+}
+
 BoundaryLoops boundary_loops(const PolygonMesh& mesh, const FacetLinks& links) {
     return HoleTracer(mesh, links).trace();
 }
@@ -201,7 +201,8 @@ FillHolesCounts fill_holes(PolygonMesh& mesh, const FacetLinks& links, const Fil
     for (std::size_t i = 0; i < loops.size(); ++i) {
         const auto loop = loops[i];
         if (loop.size() > static_cast<std::size_t>(options.max_edges)
-            || diameter(mesh, loop) > options.max_diameter)
+            || diameter_of(mesh, loop) > options.max_diameter
+            || (options.stays_open && options.stays_open(loop)))
             continue;
         const std::span<const Index> facets{loops.facets.data() + loops.begin[i], loop.size()};
         Pieces pieces;

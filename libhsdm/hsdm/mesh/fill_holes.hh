@@ -5,6 +5,8 @@
 #include "hsdm/mesh/constants.hh"
 #include "hsdm/mesh/facet_links.hh"
 
+#include <functional>
+
 namespace hsdm {
 
 struct FillHolesOptions {
@@ -17,6 +19,8 @@ struct FillHolesOptions {
     /// Also closes loops that cannot be closed otherwise, by a vertex at the middle and triangles around it,
     /// whatever their shape. Only loops of two edges stay open.
     bool insist = false;
+    /// Of loops within the limits, those that stay open all the same; none if it is empty.
+    std::function<bool(std::span<const Index> loop)> stays_open{};
 
     static constexpr int no_limit = std::numeric_limits<int>::max();
 };
@@ -54,6 +58,9 @@ inline double length_of(const PolygonMesh& mesh, std::span<const Index> loop) {
         length += (mesh.positions[loop[(i + 1) % loop.size()]] - mesh.positions[loop[i]]).norm();
     return length;
 }
+
+/// The diagonal of its box.
+double diameter_of(const PolygonMesh& mesh, std::span<const Index> loop);
 
 /// visit(position) along the sides of loops, at their ends and no farther apart than `step`.
 template <class Visit>

@@ -46,6 +46,7 @@ DualContourOptions options_for(const MethodInput& in, double spacing) {
     } else {
         result.holes.max_diameter = std::max(holes::widest_in_spacings * spacing_in_voxels, holes::widest);
         result.holes.insist = true;
+        result.widest_free = holes::widest_in_spacings * spacing_in_voxels;
     }
     result.splinters.least_area = points_of_plane * spacing_in_voxels * spacing_in_voxels;
     if (in.has_layers) result.splinters.layers = splinters::layers_in_spacings * spacing_in_voxels;
