@@ -4,6 +4,7 @@
 #include "hsdm/core/chunks.hh"
 #include "hsdm/core/constants.hh"
 #include "hsdm/core/large_vector.hh"
+#include "hsdm/mesh/area_vector.hh"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
@@ -142,7 +143,19 @@ private:
             const double above = s->normal | (passage->middle - s->centroid / h_);
             return is_bar ? above < 0 : above > 0;
         };
-        return passage && std::ranges::all_of(used_, is_beside) ? passage : std::nullopt;
+        if (!passage || !std::ranges::all_of(used_, is_beside)) return {};
+        angles_.clear();
+        for (const NormalSet* s : used_)
+            if (lies_before(*s, *passage)) angles_.push_back(across.angle_of(s->normal));
+        return wide_gaps(angles_) == 0 ? passage : std::nullopt;
+    }
+
+    /// Does the middle lie above or below what a set covers across the bar, if its points lie there evenly?
+    /// The sides of walls that meet begin beside the middle.
+    bool lies_before(const NormalSet& s, const Passage& passage) const {
+        const Vec3 way = unit(passage.along % s.normal), off = passage.middle - s.centroid / h_;
+        const double along_it = (way | off) * h_;
+        return along_it * along_it <= 3 * s.spread.along(way); // of an even stretch: its half squared
     }
 
     /// Is there a set opposite that this one faces away from, as on the other side of a bar, or that it
