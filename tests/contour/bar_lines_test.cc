@@ -163,6 +163,15 @@ TEST_CASE("grid points move into bars and bores, and nowhere else", "[contour]")
         CHECK(move_to_bar_lines(grid, stages.sets, stages.related, 1) == 0);
         CHECK(grid.moved_by.empty());
     }
+    const Solid wall = moved(box({4, 0.6, 6}), {2, 0, 0}); // from an axis outward
+    Solid star = wall;
+    for (const double turn : {2.0, 4.0})
+        star = star | wall.placed(turned({0, 0, 1}, turn * std::numbers::pi / 3));
+    for (std::uint64_t seed = 1; seed <= 6; ++seed) { // walls that meet are no bar
+        const Stages stages(cloud_of_bars(star, 3 * 2 * 4 * 6, seed, seed % 2 == 0), 4, 16);
+        GridPoints grid = build_grid_points(stages.level);
+        CHECK(move_to_bar_lines(grid, stages.sets, stages.related, 1) <= 1);
+    }
 }
 
 TEST_CASE("bars and bores thinner than a voxel hold together", "[contour]") {

@@ -1,5 +1,6 @@
 #include "hsdm/pipeline/warnings.hh"
 #include "hsdm/reconstruct.hh"
+#include "support/pose.hh"
 #include "support/random.hh"
 #include "support/sample.hh"
 
@@ -51,7 +52,35 @@ std::vector<Report::Warning> warnings_of_holes(const Report& report) {
     return found;
 }
 
+/// A sphere of nine points to a unit of area without those of an oval on it, as long and as wide as given.
+PointCloud sphere_with_oval(double length, double width, std::uint64_t seed) {
+    Random random(seed);
+    const Pose pose = random_pose(random, 0.5);
+    PointCloud cloud;
+    while (cloud.size() < 14000) {
+        const Vec3 out = random.direction(), at = 11 * out;
+        const double x = 2 * at[0] / length, y = 2 * at[1] / width;
+        if (at[2] > 0 && x * x + y * y < 1) continue;
+        cloud.positions.push_back(pose.to_world(at));
+        cloud.normals.push_back(pose.rotate(out));
+    }
+    return cloud;
+}
+
 } // namespace
+
+TEST_CASE("whether a hole of few voxels stays open hangs on the sampling, not on the pose", "[holes]") {
+    for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+        INFO("pose " << seed);
+        ReconstructOptions options;
+        options.voxel_size = 1.7; // five spacings
+        // 30 by 12 spacings, 6 voxels by 2.4; and 8 by 8 spacings
+        const Report oval = reconstruct(sphere_with_oval(10, 4, seed), options).report;
+        CHECK(oval.mesh.boundary_loops == 1);
+        CHECK(oval.mesh.euler == 1);
+        CHECK(reconstruct(sphere_with_oval(2.7, 2.7, seed), options).report.mesh.closed);
+    }
+}
 
 TEST_CASE("a hole that is closed where points should lie is warned of if the surface stays open",
           "[warnings][holes]") {

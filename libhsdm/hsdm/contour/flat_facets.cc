@@ -3,7 +3,6 @@
 #include "hsdm/core/chunks.hh"
 #include "hsdm/mesh/collapse_edges.hh"
 #include "hsdm/mesh/doublets.hh"
-#include "hsdm/mesh/facet_links.hh"
 #include "hsdm/mesh/facet_unions.hh"
 #include "hsdm/mesh/manifold.hh"
 #include "hsdm/quality/topology.hh"
@@ -66,38 +65,6 @@ std::size_t collapse_empty(const Vec3& origin, const std::vector<Index>& flat, P
         for (const EdgeCollapse& side : sides_by_length(mesh, f))
             if (mesh.positions[side.from] + origin == mesh.positions[side.to] + origin) empty.push_back(side);
     return removed_vertices(collapse_empty_edges(mesh, empty), mesh);
-}
-
-/// The ring from the corner `from` round to the one before.
-std::vector<Index> ring_from(std::span<const Index> ring, Index from) {
-    std::vector<Index> turned(ring.begin(), ring.end());
-    std::ranges::rotate(turned, std::ranges::find(turned, from));
-    return turned;
-}
-
-/// Makes one facet of each without an area and the one across its longest side, whose shape stays: in one
-/// line with that side it gets the other corners. Not if a corner would be there twice.
-std::size_t unite_across_longest(const std::vector<Index>& flat, PolygonMesh& mesh) {
-    if (flat.empty()) return 0;
-    const FacetLinks links = link_facets(mesh);
-    FacetUnions unions(mesh);
-    for (const Index f : flat) {
-        const EdgeCollapse longest = sides_by_length(mesh, f).back();
-        const auto ring = mesh.facet(f);
-        Index side = mesh.first[f];
-        const auto next = [&] { return mesh.corners[next_side(mesh, f, side)]; };
-        while (std::minmax(mesh.corners[side], next()) != std::minmax(longest.from, longest.to)) ++side;
-        const Index twin = links.twin[side];
-        if (twin == no_index || !unions.is_free(f, links.facet[twin])) continue;
-        const Index beyond = links.facet[twin];
-        std::vector<Index> whole = ring_from(ring, next());
-        const std::vector<Index> other = ring_from(mesh.facet(beyond), mesh.corners[side]);
-        whole.insert(whole.end(), other.begin() + 1, other.end() - 1);
-        std::vector<Index> once = whole;
-        sort_unique(once);
-        if (once.size() == whole.size()) unions.unite(f, beyond, ring_from(whole, once[0]));
-    }
-    return unions.apply(mesh);
 }
 
 } // namespace

@@ -1,9 +1,11 @@
 #include "hsdm/mesh/facet_unions.hh"
 
 #include "hsdm/core/chunks.hh"
+#include "hsdm/mesh/facet_links.hh"
 
 #include <algorithm>
 #include <atomic>
+#include <tuple>
 
 namespace hsdm {
 namespace {
@@ -14,6 +16,26 @@ std::vector<Index> without(std::span<const Index> ring, Index v) {
     std::vector<Index> rest(at + 1, ring.end());
     rest.insert(rest.end(), ring.begin(), at);
     return rest;
+}
+
+/// The ring from the corner `from` round to the one before.
+std::vector<Index> ring_from(std::span<const Index> ring, Index from) {
+    std::vector<Index> turned(ring.begin(), ring.end());
+    std::ranges::rotate(turned, std::ranges::find(turned, from));
+    return turned;
+}
+
+/// Of sides as long the one of the greatest vertices, whichever way round the facet is.
+Index longest_side(const PolygonMesh& mesh, Index f) {
+    Index longest = mesh.first[f];
+    std::tuple<double, Index, Index> most{-1, 0, 0};
+    for (Index side = mesh.first[f]; side < mesh.first[f + 1]; ++side) {
+        const Index from = mesh.corners[side], to = mesh.corners[next_side(mesh, f, side)];
+        const double length = (mesh.positions[to] - mesh.positions[from]).sqrnorm();
+        const std::tuple order(length, std::min(from, to), std::max(from, to));
+        if (order > most) most = order, longest = side;
+    }
+    return longest;
 }
 
 } // namespace
@@ -86,6 +108,25 @@ std::size_t FacetUnions::apply(PolygonMesh& mesh) const {
     mesh.corners = std::move(kept.corners);
     mesh.first = std::move(kept.first);
     return count_;
+}
+
+std::size_t unite_across_longest(std::span<const Index> facets, PolygonMesh& mesh) {
+    if (facets.empty()) return 0;
+    const FacetLinks links = link_facets(mesh);
+    FacetUnions unions(mesh);
+    for (const Index f : facets) {
+        const Index side = longest_side(mesh, f), twin = links.twin[side];
+        if (twin == no_index || !unions.is_free(f, links.facet[twin])) continue;
+        const Index beyond = links.facet[twin];
+        if (std::ranges::binary_search(facets, beyond)) continue;
+        std::vector<Index> whole = ring_from(mesh.facet(f), mesh.corners[next_side(mesh, f, side)]);
+        const std::vector<Index> other = ring_from(mesh.facet(beyond), mesh.corners[side]);
+        whole.insert(whole.end(), other.begin() + 1, other.end() - 1);
+        std::vector<Index> once = whole;
+        sort_unique(once);
+        if (once.size() == whole.size()) unions.unite(f, beyond, ring_from(whole, once[0]));
+    }
+    return unions.apply(mesh);
 }
 
 } // namespace hsdm

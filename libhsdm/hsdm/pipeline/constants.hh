@@ -29,7 +29,7 @@ inline constexpr double share_of_cylinders = 0.001;
 // the spacing
 namespace hsdm::holes {
 
-/// spacings: wider loops stay open, unless voxels are wide against that and points lie there.
+/// spacings: wider loops stay open.
 /// Why: by trial; a gap that the scanning left is to be closed, a window or a slot not.
 HSDM_TUNED double widest_in_spacings = 20;
 
