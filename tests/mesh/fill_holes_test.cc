@@ -4,6 +4,7 @@
 
 #include <catch2/catch.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -109,6 +110,24 @@ TEST_CASE("loops longer or wider than asked for stay open", "[holes]") {
     CHECK(measure_topology(mesh).signed_volume > 0);
     CHECK(measure_topology(mesh).quads >= 3);
     check_manifold(mesh);
+}
+
+TEST_CASE("loops stay open for which that is asked", "[holes]") {
+    PolygonMesh mesh = keep_facets(torus(16, 8), [](std::size_t f) { return f != 10 && f != 70; });
+    const Index corner = torus(16, 8).facet(70)[0];
+    FillHolesOptions options;
+    std::size_t asked = 0;
+    options.stays_open = [&](std::span<const Index> loop) {
+        ++asked;
+        return std::ranges::find(loop, corner) != loop.end();
+    };
+    const FillHolesCounts counts = fill_holes(mesh, options);
+    CHECK(asked == 2);
+    CHECK(counts.closed == 1);
+    CHECK(counts.refused == 0);
+    const BoundaryLoops left = boundary_loops(mesh);
+    REQUIRE(left.size() == 1);
+    CHECK(std::ranges::find(left[0], corner) != left[0].end());
 }
 
 TEST_CASE("long loops are closed too", "[holes]") {
