@@ -21,7 +21,7 @@ std::vector<Index> without(std::span<const Index> ring, Index v) {
 /// The ring from the corner `from` round to the one before.
 std::vector<Index> ring_from(std::span<const Index> ring, Index from) {
     std::vector<Index> turned(ring.begin(), ring.end());
-    std::ranges::rotate(turned, std::ranges::find(turned, from));
+    std::rotate(turned.begin(), std::find(turned.begin(), turned.end(), from), turned.end());
     return turned;
 }
 
