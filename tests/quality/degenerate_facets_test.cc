@@ -84,20 +84,3 @@ TEST_CASE("whether a polygon has area does not depend on its scale", "[quality]"
     }
     CHECK(has_no_area(std::vector<Vec3>(4, Vec3(1, 2, 3))));
 }
-
-TEST_CASE("without hints a facet in one line becomes part of the one beyond, and the surface stays closed",
-          "[quality]") {
-    PolygonMesh mesh;
-    mesh.positions = {Vec3(0, 0, 0), Vec3(2, 0, 0), Vec3(0, 2, 0), Vec3(0, 0, 2), Vec3(0.5, 0, 1.5)};
-    mesh.add_facet(std::array<Index, 3>{0, 2, 1});
-    mesh.add_facet(std::array<Index, 3>{0, 1, 3});
-    mesh.add_facet(std::array<Index, 3>{0, 3, 2});
-    mesh.add_facet(std::array<Index, 4>{1, 2, 3, 4});
-    mesh.add_facet(std::array<Index, 3>{3, 1, 4}); // along the edge from 1 to 3
-    REQUIRE(measure_topology(mesh).closed());
-    CHECK(dropped(mesh).count == 0);
-    CHECK(mesh.facet_count() == 4);
-    CHECK(measure_topology(mesh).closed());
-    CHECK(measure_topology(mesh).degenerate_facets == 0);
-    CHECK(signed_volume(mesh) == Approx(8.0 / 6));
-}

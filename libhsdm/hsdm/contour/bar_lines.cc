@@ -300,11 +300,13 @@ std::size_t move_to(std::vector<Claim> claims, GridPoints& grid) {
         claims.clear();
         if (!wanted.empty() && taken.empty()) resize_large(grid.moved_by, grid.size(), Vec3(0, 0, 0));
         Index last = no_index;
+        Vec3 there;
         for (const Wanted& w : wanted) {
-            if (std::exchange(last, w.point) == w.point) {
-                claims.push_back(w.claim);
+            if (std::exchange(last, w.point) == w.point) { // the same place needs no second one
+                if ((w.claim.place - there).norm() > placement::margin) claims.push_back(w.claim);
                 continue;
             }
+            there = w.claim.place;
             const VoxelCoord at = grid.coord(w.point);
             grid.moved_by[w.point] = w.claim.place - Vec3(at[0], at[1], at[2]);
             taken.push_back(w.point);

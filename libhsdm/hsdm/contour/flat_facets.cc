@@ -69,6 +69,12 @@ std::size_t collapse_empty(const Vec3& origin, const std::vector<Index>& flat, P
 
 } // namespace
 
+std::size_t unite_flat_facets(const Vec3& origin, PolygonMesh& mesh) {
+    std::size_t count = 0;
+    while (const std::size_t more = unite_across_longest(flat_facets(origin, mesh), mesh)) count += more;
+    return count;
+}
+
 std::size_t collapse_flat_facets(const Vec3& origin, PolygonMesh& mesh) {
     std::size_t count = 0;
     std::vector<Index> touched; // origins of vertices that may lose their third facet; ascending

@@ -14,4 +14,8 @@ namespace hsdm {
 /// united. O(facets) a round, parallel.
 std::size_t collapse_flat_facets(const Vec3& origin, PolygonMesh& mesh);
 
+/// Only unites them, so that vertices keep their numbers. Returns how many were united. O(facets) a round,
+/// parallel.
+std::size_t unite_flat_facets(const Vec3& origin, PolygonMesh& mesh);
+
 } // namespace hsdm

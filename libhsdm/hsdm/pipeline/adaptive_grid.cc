@@ -1,6 +1,7 @@
 #include "hsdm/pipeline/adaptive_grid.hh"
 
 #include "hsdm/contour/constants.hh"
+#include "hsdm/contour/flat_facets.hh"
 #include "hsdm/errors.hh"
 #include "hsdm/mesh/vertex_normals.hh"
 #include "hsdm/pipeline/attributes.hh"
@@ -40,6 +41,7 @@ PolygonMesh adaptive_grid(const MethodInput& in, std::span<const Vec3> points, c
         simplify(fine, points, in.octree.extent, in.level.depth,
                  {.max_error = bound, .measure = in.options.measure}, known.cells ? &*known.cells : nullptr);
     known = {};
+    unite_flat_facets(in.octree.origin, coarse.mesh);
     if (coarse.intersecting > 0) known.intersections = facets_that_meet(coarse.mesh);
     report.rejected["intersections_left"] = coarse.intersecting;
     report.grid.kind = "adaptive";

@@ -315,6 +315,7 @@ Completion completed_all(Completing how, Passing passing, const PolygonMesh& mes
     const CompletedPoints points = how.points(again, result.facets.mesh, left, passing, result.report);
     result.facets = DualContour(); // frees what is not needed any more
     options.holes = every_hole;
+    options.widest_free = DualContourOptions().widest_free;
     return {how.draft(again, points, result.report, completing::shift, options), left.vertices.size()};
 }
 

@@ -2,7 +2,6 @@
 
 #include "hsdm/core/chunks.hh"
 #include "hsdm/core/large_vector.hh"
-#include "hsdm/mesh/facet_unions.hh"
 #include "hsdm/mesh/remove_facets.hh"
 #include "hsdm/quality/topology.hh"
 
@@ -49,34 +48,20 @@ bool spans_cut(const PolygonMesh& mesh, const Vec3& origin, const CloudFrame& fr
                        [&](Index v) { return frame.stretch_of(mesh.positions[v] + origin) != stretch; });
 }
 
-/// In the frame, where coordinates are rounded; ascending.
-std::vector<Index> flat_facets(const PolygonMesh& mesh, const Vec3& origin, const CloudFrame& frame) {
-    return collected<Index>(mesh.facet_count(), chunks::quick,
-                            [&](std::size_t begin, std::size_t end, std::vector<Index>& flat) {
-                                std::vector<Vec3> ring;
-                                for (std::size_t f = begin; f < end; ++f) {
-                                    ring.clear();
-                                    for (const Index v : mesh.facet(f))
-                                        ring.push_back(frame.to_cloud(mesh.positions[v] + origin));
-                                    if (has_no_area(ring)) flat.push_back(static_cast<Index>(f));
-                                }
-                            });
-}
-
 } // namespace
 
 Occurrences drop_degenerate_facets(PolygonMesh& mesh, const Vec3& origin, const CloudFrame& frame,
                                    FacetLinks& links, FeatureHints& hints) {
-    std::vector<Index> flat = flat_facets(mesh, origin, frame);
-    while (hints.sides.empty() && unite_across_longest(flat, mesh) > 0) {
-        flat = flat_facets(mesh, origin, frame);
-        links = link_facets(mesh);
-    }
     std::vector<std::uint8_t> unsound = large_vector<std::uint8_t>(mesh.facet_count());
-    for (const Index f : flat) unsound[f] = 1;
-    for_each_index(mesh.facet_count(), chunks::quick, [&](std::size_t f) {
-        unsound[f] |= is_of_pillow(mesh, links, f) || is_of_flat_component(mesh, links, f)
-                      || (frame.has_cuts() && spans_cut(mesh, origin, frame, f));
+    for_chunks(mesh.facet_count(), chunks::quick, [&](std::size_t begin, std::size_t end, std::size_t) {
+        std::vector<Vec3> ring;
+        for (std::size_t f = begin; f < end; ++f) {
+            ring.clear();
+            for (Index v : mesh.facet(f)) ring.push_back(frame.to_cloud(mesh.positions[v] + origin));
+            unsound[f] = has_no_area(ring) || is_of_pillow(mesh, links, f)
+                         || is_of_flat_component(mesh, links, f)
+                         || (frame.has_cuts() && spans_cut(mesh, origin, frame, f));
+        }
     });
     if (std::find(unsound.begin(), unsound.end(), 1) == unsound.end()) return {};
     const Occurrences dropped =
