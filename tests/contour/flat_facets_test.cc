@@ -75,19 +75,17 @@ TEST_CASE("facets without an area go where vertices lose their third facet by it
     CHECK(collapse_flat_facets(Vec3(0, 0, 0), changed) == 0);
 }
 
-TEST_CASE("a facet in one line becomes part of the one beyond, or of another one in line", "[contour]") {
+TEST_CASE("a facet in one line becomes part of the one beyond", "[contour]") {
     const Vec3 a(0, 0, 0), b(2, 0, 0), c(0, 2, 0), tip(0, 0, 2);
-    // one along an edge; and two, folded onto each other there
-    const auto mesh = GENERATE_COPY(values(
-        {mesh_of({a, b, c, tip, {0.5, 0, 1.5}}, {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3, 4}, {3, 1, 4}}),
-         mesh_of({a, b, c, tip, {0.5, 0, 1.5}, {1, 0, 1}},
-                 {{0, 2, 1}, {0, 1, 5, 3}, {0, 3, 2}, {1, 2, 3, 4}, {3, 1, 4}, {1, 3, 5}})}));
+    const PolygonMesh mesh = mesh_of({a, b, c, tip, {0.5, 0, 1.5}}, // the last facet along an edge
+                                     {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3, 4}, {3, 1, 4}});
     PolygonMesh changed = mesh;
     REQUIRE(measure_topology(mesh).closed());
-    CHECK(unite_flat_facets(Vec3(0, 0, 0), changed) == mesh.facet_count() - 4);
+    CHECK(unite_flat_facets(Vec3(0, 0, 0), changed) == 1);
     CHECK(changed.facet_count() == 4);
     CHECK(changed.positions == mesh.positions);
     CHECK(measure_topology(changed).closed());
     CHECK(measure_topology(changed).degenerate_facets == 0);
     CHECK(signed_volume(changed) == Approx(8.0 / 6));
+    CHECK(unite_flat_facets(Vec3(0, 0, 0), changed) == 0);
 }

@@ -118,7 +118,7 @@ std::size_t unite_across_longest(std::span<const Index> facets, PolygonMesh& mes
         const Index side = longest_side(mesh, f), twin = links.twin[side];
         if (twin == no_index || !unions.is_free(f, links.facet[twin])) continue;
         const Index beyond = links.facet[twin];
-        if (std::ranges::binary_search(facets, beyond) && longest_side(mesh, beyond) != twin) continue;
+        if (std::ranges::binary_search(facets, beyond)) continue; // together they would be as flat
         std::vector<Index> whole = ring_from(mesh.facet(f), mesh.corners[next_side(mesh, f, side)]);
         const std::vector<Index> other = ring_from(mesh.facet(beyond), mesh.corners[side]);
         whole.insert(whole.end(), other.begin() + 1, other.end() - 1);
