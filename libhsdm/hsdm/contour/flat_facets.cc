@@ -54,6 +54,7 @@ std::size_t removed_vertices(const std::vector<std::uint8_t>& collapsed, Polygon
 
 std::size_t collapse_shortest(const std::vector<Index>& flat, PolygonMesh& mesh) {
     std::vector<EdgeCollapse> shortest;
+    shortest.reserve(flat.size());
     for (const Index f : flat) shortest.push_back(sides_by_length(mesh, f)[0]);
     return removed_vertices(collapse_edges(mesh, shortest), mesh);
 }
