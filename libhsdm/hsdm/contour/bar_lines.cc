@@ -155,7 +155,7 @@ private:
     bool lies_before(const NormalSet& s, const Passage& passage) const {
         const Vec3 way = unit(passage.along % s.normal), off = passage.middle - s.centroid / h_;
         const double along_it = (way | off) * h_;
-        return along_it * along_it <= 3 * s.spread.along(way); // of an even stretch: its half squared
+        return along_it * along_it <= s.spread.reach_squared(way);
     }
 
     /// Is there a set opposite that this one faces away from, as on the other side of a bar, or that it

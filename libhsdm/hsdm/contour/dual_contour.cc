@@ -428,13 +428,14 @@ DualContour dual_contour(const Octree& octree, const OctreeLevel& level, const N
         FillHolesOptions holes = options.holes;
         holes.max_diameter *= h;
         holes.stays_open = [&](std::span<const Index> loop) {
-            return diameter_of(result.mesh, loop) > options.widest_free * h
-                   && missing_points(octree, level, result.voxel, result.mesh, loop) > holes::least_missing;
+            const HoleMiddle middle = middle_of_hole(octree, level, result.voxel, result.mesh, loop);
+            if (!(middle.missing_points > holes::least_missing)) return false;
+            if (diameter_of(result.mesh, loop) > options.widest_free * h) return true;
+            if (!options.part.is_part()) result.wide_holes.add({1, middle.position});
+            return false;
         };
         if (!result.links) result.links = link_facets(result.mesh);
         result.holes = fill_holes(result.mesh, *result.links, holes);
-        if (!options.part.is_part())
-            result.wide_holes = wide_holes(octree, level, result.voxel, result.mesh, result.holes);
         changed(result.holes.closed);
     }
     result.doublets = changed(merge_doublets(

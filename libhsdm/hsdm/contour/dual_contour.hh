@@ -26,7 +26,7 @@ struct DualContourOptions {
     FillHolesOptions holes{.max_edges = holes::most_edges, .max_diameter = holes::widest};
     UntangleOptions untangle{.reach = placement::farthest_out, .nearby = 2 * placement::farthest_out};
     bool fill = true; ///< close small boundary loops
-    /// voxels: not wider ones than that in whose middle points lack (missing_points)
+    /// voxels: not wider ones than that in whose middle points lack (middle_of_hole)
     double widest_free = std::numeric_limits<double>::infinity();
     bool flat_corners =
         true; ///< let quads that are triangles by their shape give way (collapse_flat_corners)

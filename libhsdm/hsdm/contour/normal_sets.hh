@@ -27,6 +27,8 @@ struct Spread {
         return moments[0] * d[0] * d[0] + moments[1] * d[1] * d[1] + moments[2] * d[2] * d[2]
                + 2 * (moments[3] * d[0] * d[1] + moments[4] * d[1] * d[2] + moments[5] * d[2] * d[0]);
     }
+    /// How far points that lie evenly reach from their mean along a unit direction, squared.
+    double reach_squared(const Vec3& d) const { return 3 * std::max(0.0, along(d)); }
 };
 
 /// One normal-consistent set: the paper's graph vertex for points with normals (section 3.4.2).

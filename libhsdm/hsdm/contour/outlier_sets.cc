@@ -32,7 +32,7 @@ bool reaches_few(const OctreeLevel& level, const RelationTest& related, const No
 bool is_over(const NormalSet& set, const Vec3& p, double distance) {
     const Vec3 foot = p - distance * set.normal - set.centroid;
     const double length_squared = foot.sqrnorm();
-    return length_squared * length_squared <= 3 * set.spread.along(foot);
+    return length_squared * length_squared <= set.spread.reach_squared(foot);
 }
 
 /// Does set s face aside from sheets of many points in the voxels around that face two opposite ways, and lie

@@ -237,8 +237,8 @@ void extend_borders(const DualMesh& mesh, const NormalSets& sets, PlacedVertices
         Vec3 outward = placed[v] - inner / static_cast<double>(corners.size());
         outward -= along * (along | outward);
         outward = unit(outward - set->normal * (set->normal | outward));
-        const double reach = (outward | (set->centroid - placed[v]))
-                             + std::sqrt(3 * std::max(0.0, set->spread.along(outward)));
+        const double reach =
+            (outward | (set->centroid - placed[v])) + std::sqrt(set->spread.reach_squared(outward));
         if (!(reach > 0)) return;
         const Vec3 to = placed[v] + outward * reach;
         vertices.positions[v] = within_voxel(mesh, v, placed[v], to);

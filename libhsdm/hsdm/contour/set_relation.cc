@@ -48,7 +48,7 @@ Relation RelationTest::crease(const NormalSet& a, const NormalSet& b, double cos
 bool RelationTest::ends_at(const NormalSet& set, const Vec3& plane, double above, bool convex,
                            double cosine) const {
     const double short_of = convex ? -above : above;
-    const double reach = std::sqrt(3 * std::max(0.0, set.spread.along(plane)));
+    const double reach = std::sqrt(set.spread.reach_squared(plane));
     const double sine = std::sqrt(1 - cosine * cosine);
     const double spacing = 0.5 * voxel_size_ / std::sqrt(static_cast<double>(set.count));
     return short_of - reach < (crease_gap_ + spacing) * sine

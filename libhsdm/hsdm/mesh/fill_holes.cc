@@ -219,7 +219,6 @@ FillHolesCounts fill_holes(PolygonMesh& mesh, const FacetLinks& links, const Fil
             ++counts.refused;
             continue;
         }
-        counts.first.push_back(static_cast<Index>(mesh.facet_count()));
         for (const auto& piece : pieces) {
             mesh.add_facet(piece);
             edges.add(piece);

@@ -35,7 +35,6 @@ struct FillHolesCounts {
     std::size_t refused = 0;
     std::size_t facets = 0;   ///< added, at the end of the mesh
     std::size_t vertices = 0; ///< added, at the end of the mesh: middles of loops
-    std::vector<Index> first; ///< of each closed loop, the first of its facets
 };
 
 /// Boundary loops as flat arrays: the vertices of loop i are vertices[begin[i]] .. vertices[begin[i + 1]],
