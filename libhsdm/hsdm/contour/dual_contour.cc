@@ -6,6 +6,7 @@
 #include "hsdm/contour/flat_facets.hh"
 #include "hsdm/contour/grid_signs.hh"
 #include "hsdm/contour/move_to_creases.hh"
+#include "hsdm/contour/odd_facets.hh"
 #include "hsdm/contour/reach.hh"
 #include "hsdm/contour/rims.hh"
 #include "hsdm/contour/shared_corners.hh"
@@ -460,6 +461,8 @@ DualContour dual_contour(const Octree& octree, const OctreeLevel& level, const N
             changed(collapse_flat_corners(sheets::plane_error * h, result.classes, result.mesh));
     result.straight = changed(drop_straight_vertices(sheets::plane_error * h, result.mesh));
     if (result.straight > 0) remove_isolated_vertices(result.mesh);
+    if (options.flat_corners)
+        result.recut = changed(recut_odd_facets(sheets::plane_error * h, result.classes, result.mesh));
     changed(collapse_flat_facets(octree.origin, result.mesh));
     if (options.part.is_part())
         untangle_share(octree.origin, h, options, result);

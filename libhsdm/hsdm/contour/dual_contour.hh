@@ -57,6 +57,7 @@ struct DualContour {
     std::size_t corners_merged = 0;
     std::size_t flat_corners = 0; ///< vertices merged into others on creases (collapse_flat_corners)
     std::size_t straight = 0;     ///< vertices of two facets taken out of them (drop_straight_vertices)
+    std::size_t recut = 0;        ///< facets replaced by quads over the same vertices (recut_odd_facets)
     std::size_t midpoints = 0;    ///< vertices added so that no two mesh edges join the same two vertices
     std::size_t doublets = 0;     ///< pairs of facets round one vertex merged into one facet
     Occurrences splinters;        ///< facets of splinters, removed
