@@ -100,7 +100,7 @@ TEST_CASE("a bore of whose wall a strip was seen is closed from end to end besid
     CHECK(bores_of(bore(1, gone(2.6))).loops.empty()); // a hole in the wall is none
 }
 
-TEST_CASE("a bore with a strip seen is found wherever its border begins", "[completion]") {
+TEST_CASE("a bore with a strip seen is found wherever its border begins", "[completion][slow]") {
     for (const double slope : {0.0, 0.15})
         for (const double turn : {0.0, 0.7, 1.4, 2.1, 2.8, -0.7, -1.4, -2.1, -2.8}) {
             INFO("slope " << slope << ", strip at " << turn);

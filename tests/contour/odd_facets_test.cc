@@ -9,6 +9,7 @@
 #include <catch2/catch.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 using namespace hsdm;
@@ -115,14 +116,36 @@ TEST_CASE("triangles stay where the ground folds, is bent, or where there would 
     stays(inward);
 }
 
-TEST_CASE("no vertex is left with two facets, no edge there twice") {
-    // Vertex 16 has three triangles round it.
-    PolygonMesh mesh = grid(3, {4}, {{5, 6, 16}, {6, 10, 16}, {10, 9, 5, 16}});
-    mesh.positions.emplace_back(1.4, 1.3, 0);
-    mesh.origin = indices_below(mesh.vertex_count());
-    const std::vector<Index> corners = mesh.corners;
-    CHECK(recut(mesh) == 0);
-    CHECK(mesh.corners == corners);
+TEST_CASE("no vertex loses its third facet, and no facet has an edge or a diagonal of a new quad") {
+    const auto stays = [](PolygonMesh mesh) {
+        mesh.origin = indices_below(mesh.vertex_count());
+        const std::vector<Index> corners = mesh.corners;
+        CHECK(recut(mesh) == 0);
+        CHECK(mesh.corners == corners);
+    };
+    PolygonMesh three = grid(3, {4}, {{5, 6, 16}, {6, 10, 16}, {10, 9, 5, 16}});
+    three.positions.emplace_back(1.4, 1.3, 0);
+    stays(three);
+    for (const Facet& beside : {Facet{5, 16, 10, 17}, Facet{5, 16, 10}, Facet{6, 16, 9, 17}}) {
+        PolygonMesh mesh = grid(3, {4}, cut_in_two); // quad 5 6 10 9
+        mesh.positions.emplace_back(2, 1, 1);
+        mesh.positions.emplace_back(1, 2, 1);
+        mesh.add_facet(beside);
+        stays(mesh);
+    }
+}
+
+TEST_CASE("new sides do not bend as creases do") {
+    const auto bent = [](double slope) { // along 2 7 12 17
+        PolygonMesh mesh = grid(4, {5, 6}, {{6, 7, 8, 13, 12, 11}});
+        for (Vec3& p : mesh.positions) p[2] = slope * std::abs(p[0] - 2);
+        return mesh;
+    };
+    const auto recut_at_any_height = [](PolygonMesh mesh) {
+        return recut_odd_facets(10, std::vector<VertexClass>(mesh.vertex_count(), VertexClass::smooth), mesh);
+    };
+    CHECK(recut_at_any_height(bent(0.16)) == 1); // 18 degrees
+    CHECK(recut_at_any_height(bent(0.4)) == 0);
 }
 
 TEST_CASE("recut ground stays one disc of the same area, whichever way it faces and whatever was cut") {
@@ -148,6 +171,7 @@ TEST_CASE("recut ground stays one disc of the same area, whichever way it faces 
                 cut.add_facet(q);
             }
         }
+        for (Index& origin : cut.origin) origin = static_cast<Index>(cut.vertex_count() - 1 - origin);
         PolygonMesh turned = cut;
         turn(turned);
         const double before = area(cut);

@@ -28,8 +28,7 @@ struct DualContourOptions {
     bool fill = true; ///< close small boundary loops
     /// voxels: not wider ones than that in whose middle points lack (middle_of_hole)
     double widest_free = std::numeric_limits<double>::infinity();
-    bool flat_corners =
-        true; ///< let quads that are triangles by their shape give way (collapse_flat_corners)
+    bool flat_corners = true; ///< more quads: collapse_flat_corners, recut_odd_facets
     /// the data go round the whole solid: it has no border (label_grid_signs, trim_unsupported)
     bool all_round = false;
     PartVoxels part{};    ///< where the level is part of a larger one

@@ -24,21 +24,6 @@ struct FlatCorner {
     }
 };
 
-/// The sine of a polygon's angle at a corner; negative if it is reflex.
-double corner_sine(std::span<const Vec3> ring, std::size_t i, const Vec3& normal) {
-    const Vec3 on = ring[(i + 1) % ring.size()] - ring[i];
-    const Vec3 back = ring[(i + ring.size() - 1) % ring.size()] - ring[i];
-    const double lengths = on.norm() * back.norm();
-    return lengths > 0 ? (normal | (on % back)) / lengths : 0;
-}
-
-double least_sine(std::span<const Vec3> ring) {
-    const Vec3 normal = unit(area_vector(ring));
-    double least = 1;
-    for (std::size_t i = 0; i < ring.size(); ++i) least = std::min(least, corner_sine(ring, i, normal));
-    return least;
-}
-
 class FlatCornerSearch {
 public:
     FlatCornerSearch(const PolygonMesh& mesh, std::span<const VertexClass> classes)

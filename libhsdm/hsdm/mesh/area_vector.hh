@@ -46,4 +46,21 @@ inline Vec3 unit(const Vec3& v) {
     return length > 0 ? v / length : v;
 }
 
+/// The sine of a polygon's angle at corner i, with the unit normal it is seen along; negative if the corner
+/// is reflex, 0 if it has a side without length.
+inline double corner_sine(std::span<const Vec3> corners, std::size_t i, const Vec3& normal) {
+    const Vec3 on = corners[(i + 1) % corners.size()] - corners[i];
+    const Vec3 back = corners[(i + corners.size() - 1) % corners.size()] - corners[i];
+    const double lengths = on.norm() * back.norm();
+    return lengths > 0 ? (normal | (on % back)) / lengths : 0;
+}
+
+/// The least of a polygon's.
+inline double least_sine(std::span<const Vec3> corners) {
+    const Vec3 normal = unit(area_vector(corners));
+    double least = 1;
+    for (std::size_t i = 0; i < corners.size(); ++i) least = std::min(least, corner_sine(corners, i, normal));
+    return least;
+}
+
 } // namespace hsdm

@@ -86,16 +86,29 @@ UnitedFacets united(const PolygonMesh& mesh, const VertexFacets& at, Index betwe
     return whole;
 }
 
+std::vector<Index> united_across(std::span<const Index> f, std::span<const Index> g, Index from, Index to) {
+    std::vector<Index> whole = ring_from(f, to);
+    const std::vector<Index> other = ring_from(g, from);
+    whole.insert(whole.end(), other.begin() + 1, other.end() - 1);
+    std::vector<Index> once = whole;
+    sort_unique(once);
+    return once.size() == whole.size() ? whole : std::vector<Index>();
+}
+
 void FacetUnions::unite(Index f, Index g, std::vector<Index> ring) {
-    ++count_;
-    fate_[f] = fate_[g] = goes;
-    if (ring.size() < 3) return;
-    fate_[f] = static_cast<Index>(unions_.size());
-    unions_.push_back(std::move(ring));
+    std::vector<std::vector<Index>> by;
+    if (ring.size() >= 3) by.push_back(std::move(ring));
+    replace(std::array{f, g}, std::move(by));
+}
+
+void FacetUnions::replace(std::span<const Index> facets, std::vector<std::vector<Index>> by) {
+    for (const Index f : facets) fate_[f] = goes;
+    fate_[std::ranges::min(facets)] = static_cast<Index>(by_.size());
+    by_.push_back(std::move(by));
 }
 
 std::size_t FacetUnions::apply(PolygonMesh& mesh) const {
-    if (count_ == 0) return 0;
+    if (by_.empty()) return 0;
     PolygonMesh kept;
     reserve_large(kept.corners, mesh.corners.size());
     reserve_large(kept.first, mesh.first.size());
@@ -103,11 +116,11 @@ std::size_t FacetUnions::apply(PolygonMesh& mesh) const {
         if (fate_[f] == stays)
             kept.add_facet(mesh.facet(f));
         else if (fate_[f] != goes)
-            kept.add_facet(unions_[fate_[f]]);
+            for (const std::vector<Index>& facet : by_[fate_[f]]) kept.add_facet(facet);
     });
     mesh.corners = std::move(kept.corners);
     mesh.first = std::move(kept.first);
-    return count_;
+    return by_.size();
 }
 
 std::size_t unite_across_longest(std::span<const Index> facets, PolygonMesh& mesh) {
@@ -119,12 +132,9 @@ std::size_t unite_across_longest(std::span<const Index> facets, PolygonMesh& mes
         if (twin == no_index || !unions.is_free(f, links.facet[twin])) continue;
         const Index beyond = links.facet[twin];
         if (std::ranges::binary_search(facets, beyond)) continue; // together they would be as flat
-        std::vector<Index> whole = ring_from(mesh.facet(f), mesh.corners[next_side(mesh, f, side)]);
-        const std::vector<Index> other = ring_from(mesh.facet(beyond), mesh.corners[side]);
-        whole.insert(whole.end(), other.begin() + 1, other.end() - 1);
-        std::vector<Index> once = whole;
-        sort_unique(once);
-        if (once.size() == whole.size()) unions.unite(f, beyond, ring_from(whole, once[0]));
+        const std::vector<Index> whole = united_across(mesh.facet(f), mesh.facet(beyond), mesh.corners[side],
+                                                       mesh.corners[next_side(mesh, f, side)]);
+        if (!whole.empty()) unions.unite(f, beyond, ring_from(whole, std::ranges::min(whole)));
     }
     return unions.apply(mesh);
 }

@@ -1,6 +1,7 @@
 #pragma once
-// Unions of two facets round vertices that have no other facet.
+// Unions of facets: round vertices that have no other facet, and across their sides.
 
+#include "hsdm/core/large_vector.hh"
 #include "hsdm/polygon_mesh.hh"
 
 #include <array>
@@ -28,22 +29,29 @@ struct UnitedFacets {
 /// share all their sides, or if the union has a vertex twice.
 UnitedFacets united(const PolygonMesh& mesh, const VertexFacets& at, Index between);
 
-/// Facets to be replaced two by two, each once.
+/// The union of facets f and g, from vertex `to`: f runs along their side from `from` to `to`, g back. Empty
+/// if it has a vertex twice.
+std::vector<Index> united_across(std::span<const Index> f, std::span<const Index> g, Index from, Index to);
+
+/// Facets to be replaced a few at a time, each once.
 class FacetUnions {
 public:
-    explicit FacetUnions(const PolygonMesh& mesh) : fate_(mesh.facet_count(), stays) {}
+    explicit FacetUnions(const PolygonMesh& mesh)
+        : fate_(large_vector<Index>(mesh.facet_count(), Index{stays})) {}
 
     bool is_free(Index f, Index g) const { return f != g && fate_[f] == stays && fate_[g] == stays; }
     /// Replaces facets f and g by one with this ring, or by none if it has fewer than three vertices.
     void unite(Index f, Index g, std::vector<Index> ring);
-    /// Each union stands where its first facet was; positions stay. Returns how many there were.
+    /// Replaces the facets by these.
+    void replace(std::span<const Index> facets, std::vector<std::vector<Index>> by);
+    /// What replaces facets stands where the lowest of them was; positions stay. Returns how often it was
+    /// done.
     std::size_t apply(PolygonMesh& mesh) const;
 
 private:
     static constexpr Index stays = no_index, goes = no_index - 1;
-    std::vector<Index> fate_; // per facet: stays, goes, or the union that takes its place
-    std::vector<std::vector<Index>> unions_;
-    std::size_t count_ = 0;
+    std::vector<Index> fate_; // per facet: stays, goes, or what takes its place
+    std::vector<std::vector<std::vector<Index>>> by_;
 };
 
 /// Makes one facet of each of these (ascending) and the one across its longest side, if that is none of them,
