@@ -35,6 +35,23 @@ TEST_CASE("with a least sine below zero reflex corners alone are cut", "[straigh
     CHECK(cuts(0.2) == 1);
 }
 
+TEST_CASE("quads of which rounding decides are cut at their straight corner", "[straight]") {
+    const auto cuts = [](double height, double tip) {
+        PolygonMesh mesh = mesh_of({{0, 0, 0}, {1, height, 0}, {2, 0, 0}, {1, tip, 0}}, {{0, 1, 2, 3}});
+        const std::size_t count = cut_doubtful_quads(mesh);
+        if (count > 0) CHECK(mesh.corners == std::vector<Index>{1, 2, 3, 1, 3, 0});
+        CHECK(cut_doubtful_quads(mesh) == 0);
+        return count;
+    };
+    for (const double height : {0.0, 1e-9, -1e-9}) {
+        CHECK(cuts(height, 3) == 1);
+        CHECK(cuts(height, 2) == 1); // both diagonals as long
+        CHECK(cuts(height, 1) == 0); // cut at that corner anyway
+    }
+    CHECK(cuts(0.01, 3) == 0);
+    CHECK(cuts(-0.01, 3) == 0);
+}
+
 TEST_CASE("many cuts are those made one by one", "[straight]") {
     // A strip of quads, each with a reflex corner, and the same strip turned over: pairs of the same
     // diagonal.

@@ -19,6 +19,7 @@
 #include "hsdm/core/large_vector.hh"
 #include "hsdm/mesh/doublets.hh"
 #include "hsdm/mesh/part_of.hh"
+#include "hsdm/mesh/straight_corners.hh"
 #include "hsdm/spatial/self_intersections.hh"
 
 #include <algorithm>
@@ -461,6 +462,7 @@ DualContour dual_contour(const Octree& octree, const OctreeLevel& level, const N
             changed(collapse_flat_corners(sheets::plane_error * h, result.classes, result.mesh));
     result.straight = changed(drop_straight_vertices(sheets::plane_error * h, result.mesh));
     if (result.straight > 0) remove_isolated_vertices(result.mesh);
+    changed(cut_doubtful_quads(result.mesh)); // before: their triangles may become quads with others
     if (options.flat_corners)
         result.recut = changed(recut_odd_facets(sheets::plane_error * h, result.classes, result.mesh));
     changed(collapse_flat_facets(octree.origin, result.mesh));

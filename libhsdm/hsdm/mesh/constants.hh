@@ -25,6 +25,11 @@ HSDM_TUNED double quad_bend = 1.05;
 /// Why: 12 degrees: worse ones are better two triangles.
 HSDM_TUNED double least_corner = 0.2;
 
+/// sine: of a corner that rounding may turn over.
+/// Why: floats, which STL has, move a corner by a 10^5th of its sides at depth 8, as small a share of a model
+/// as a voxel is.
+inline constexpr double straight = 1e-4;
+
 /// edges: of a polygon that is split exactly, larger ones lose their best ears first.
 /// Why: bounds the work, which grows with the cube.
 inline constexpr std::size_t exact_edges = 128;

@@ -2,10 +2,12 @@
 
 #include "hsdm/core/chunks.hh"
 #include "hsdm/mesh/area_vector.hh"
+#include "hsdm/mesh/constants.hh"
 #include "hsdm/mesh/edge_set.hh"
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace hsdm {
 namespace {
@@ -36,13 +38,16 @@ struct Cut {
     std::size_t facet, corner;
 };
 
-std::vector<Cut> possible_cuts(const PolygonMesh& mesh, double least_sine) {
+/// is_due(quad, corner, sine): of its straightest corner.
+template <class Test>
+std::vector<Cut> possible_cuts(const PolygonMesh& mesh, const Test& is_due) {
     const auto find = [&](std::size_t f, std::size_t end, std::vector<Cut>& cuts) {
         for (; f < end; ++f) {
             const auto quad = mesh.facet(f);
             if (quad.size() != 4) continue;
             const auto [corner, sine] = straightest(mesh, quad);
-            if (sine < least_sine) cuts.push_back({edge(quad[corner], quad[(corner + 2) % 4]), f, corner});
+            if (is_due(quad, corner, sine))
+                cuts.push_back({edge(quad[corner], quad[(corner + 2) % 4]), f, corner});
         }
     };
     return collected<Cut>(mesh.facet_count(), chunks::usual, find);
@@ -63,10 +68,8 @@ void keep_allowed(const PolygonMesh& mesh, std::vector<Cut>& due) {
     std::sort(due.begin(), due.end(), [](const Cut& a, const Cut& b) { return a.facet < b.facet; });
 }
 
-} // namespace
-
-std::size_t cut_straight_corners(PolygonMesh& mesh, double least_sine) {
-    std::vector<Cut> due = possible_cuts(mesh, least_sine);
+/// Makes those that are allowed; returns how many.
+std::size_t make(std::vector<Cut> due, PolygonMesh& mesh) {
     keep_allowed(mesh, due);
     if (due.empty()) return 0;
     PolygonMesh cut;
@@ -84,6 +87,25 @@ std::size_t cut_straight_corners(PolygonMesh& mesh, double least_sine) {
     mesh.corners = std::move(cut.corners);
     mesh.first = std::move(cut.first);
     return due.size();
+}
+
+} // namespace
+
+std::size_t cut_straight_corners(PolygonMesh& mesh, double least_sine) {
+    return make(possible_cuts(mesh, [&](std::span<const Index>, std::size_t,
+                                        double sine) { return sine < least_sine; }),
+                mesh);
+}
+
+std::size_t cut_doubtful_quads(PolygonMesh& mesh) {
+    const auto is_doubtful = [&](std::span<const Index> quad, std::size_t corner, double sine) {
+        const auto diagonal = [&](std::size_t from) {
+            return (mesh.positions[quad[(from + 2) % 4]] - mesh.positions[quad[from % 4]]).sqrnorm();
+        };
+        return std::abs(sine) < quad_splitting::straight
+               && diagonal(corner + 1) < (1 + quad_splitting::straight) * diagonal(corner);
+    };
+    return make(possible_cuts(mesh, is_doubtful), mesh);
 }
 
 } // namespace hsdm

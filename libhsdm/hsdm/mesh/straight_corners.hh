@@ -11,4 +11,10 @@ namespace hsdm {
 /// Vertices do not change, a 2-manifold remains one. Returns how many were cut. O(corners log corners).
 std::size_t cut_straight_corners(PolygonMesh& mesh, double least_sine);
 
+/// The same where rounding decides whether a quad is a triangle: at a corner that is straight to
+/// quad_splitting::straight, the diagonal beside it the shorter one. Cut along that, as quads usually are, it
+/// has one triangle next to no area, whose corner lies on the other one, and whether the facets round it pass
+/// through that hangs on the last digit.
+std::size_t cut_doubtful_quads(PolygonMesh& mesh);
+
 } // namespace hsdm
