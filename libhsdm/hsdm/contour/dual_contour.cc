@@ -462,9 +462,11 @@ DualContour dual_contour(const Octree& octree, const OctreeLevel& level, const N
             changed(collapse_flat_corners(sheets::plane_error * h, result.classes, result.mesh));
     result.straight = changed(drop_straight_vertices(sheets::plane_error * h, result.mesh));
     if (result.straight > 0) remove_isolated_vertices(result.mesh);
-    changed(cut_doubtful_quads(result.mesh)); // before: their triangles may become quads with others
-    if (options.flat_corners)
+    if (options.flat_corners) {
+        // first, as their triangles may become quads with others
+        result.cut = changed(cut_doubtful_quads(result.mesh));
         result.recut = changed(recut_odd_facets(sheets::plane_error * h, result.classes, result.mesh));
+    }
     changed(collapse_flat_facets(octree.origin, result.mesh));
     if (options.part.is_part())
         untangle_share(octree.origin, h, options, result);

@@ -138,7 +138,7 @@ bool may_go(const FlatCorner& c, const FacetsRound& facets, double tolerance, co
         open += std::int64_t{facet[(at + facet.size() - 1) % facet.size()]} - facet[(at + 1) % facet.size()];
         if (f == c.facets[0] || f == c.facets[1]) continue;
         ring[at] = mesh.positions[c.to];
-        if (least_sine(ring) <= quad_splitting::least_corner) return false;
+        if (least_corner_sine(ring) <= quad_splitting::least_corner) return false;
     }
     return open == 0;
 }

@@ -6,6 +6,7 @@
 #include "hsdm/core/parallel_sort.hh"
 #include "hsdm/mesh/area_vector.hh"
 #include "hsdm/mesh/constants.hh"
+#include "hsdm/mesh/corner_pairs.hh"
 #include "hsdm/mesh/facet_unions.hh"
 
 #include <algorithm>
@@ -19,12 +20,8 @@ namespace {
 constexpr std::size_t most_corners = 10; // of two facets of five and a quad between
 
 using Ring = std::vector<Index>;
-using Edge = std::array<Index, 2>; // the lower vertex first
+using Edge = VertexPair;
 using Quad = std::array<Index, 4>;
-
-Edge edge_of(Index a, Index b) {
-    return {std::min(a, b), std::max(a, b)};
-}
 
 bool has(std::span<const Index> ring, Index v) {
     return std::ranges::find(ring, v) != ring.end();
@@ -125,7 +122,7 @@ private:
         if (!is_odd(f) && facet.size() != 4) return;
         for (std::size_t i = 0; i < facet.size(); ++i) {
             const Index a = facet[i], b = facet[(i + 1) % facet.size()];
-            if (at_odd_[a] && at_odd_[b]) part.push_back({edge_of(a, b), f, a < b});
+            if (at_odd_[a] && at_odd_[b]) part.push_back({pair_of(a, b), f, a < b});
         }
     }
 
@@ -134,42 +131,12 @@ private:
     std::vector<Side> sides_;
 };
 
-/// Which facets have two of the vertices of unions for corners: for the sides and the diagonals of all
-/// others.
-class PairsOfCorners {
-public:
-    PairsOfCorners(const PolygonMesh& mesh, std::span<const Union> unions) {
-        std::vector<std::uint8_t> marked = large_vector<std::uint8_t>(mesh.vertex_count());
-        for (const Union& u : unions)
-            for (const Index f : u.all())
-                for (const Index v : mesh.facet(f)) marked[v] = 1;
-        pairs_ = collected<Pair>(mesh.facet_count(), chunks::quick,
-                                 [&](std::size_t begin, std::size_t end, std::vector<Pair>& part) {
-                                     for (auto f = static_cast<Index>(begin); f < end; ++f)
-                                         for (const Index a : mesh.facet(f))
-                                             for (const Index b : mesh.facet(f))
-                                                 if (a < b && marked[a] && marked[b])
-                                                     part.push_back({{a, b}, f});
-                                 });
-        parallel_sort(pairs_);
-    }
-
-    /// Has a facet that is none of these both?
-    bool are_beside(const Edge& edge, std::span<const Index> but) const {
-        for (auto i = std::ranges::lower_bound(pairs_, Pair{edge, 0}); i != pairs_.end() && i->edge == edge;
-             ++i)
-            if (!has(but, i->facet)) return true;
-        return false;
-    }
-
-private:
-    struct Pair {
-        Edge edge;
-        Index facet;
-        auto operator<=>(const Pair&) const = default;
-    };
-    std::vector<Pair> pairs_;
-};
+std::vector<Index> vertices_of(std::span<const Union> unions, const PolygonMesh& mesh) {
+    std::vector<Index> result;
+    for (const Union& u : unions)
+        for (const Index f : u.all()) result.insert(result.end(), mesh.facet(f).begin(), mesh.facet(f).end());
+    return result;
+}
 
 /// A union and its quads.
 struct Recut {
@@ -181,11 +148,12 @@ struct Recut {
     double least_sine = 0; ///< of the corners of the quads
 
     bool is_before(const Recut& other) const {
-        return std::tie(other.least_sine, ring) < std::tie(least_sine, other.ring);
+        const Index lowest = std::ranges::min(of.facets), others = std::ranges::min(other.of.facets);
+        return std::tie(other.least_sine, ring, lowest) < std::tie(least_sine, other.ring, others);
     }
     std::array<Edge, 2> diagonals(std::size_t quad) const {
         const Quad& q = quads[quad];
-        return {edge_of(q[0], q[2]), edge_of(q[1], q[3])};
+        return {pair_of(q[0], q[2]), pair_of(q[1], q[3])};
     }
 };
 
@@ -197,7 +165,7 @@ public:
         : tolerance_(tolerance),
           classes_(classes),
           mesh_(mesh),
-          pairs_(mesh, unions),
+          pairs_(mesh, vertices_of(unions, mesh)),
           facets_at_(large_vector<Index>(mesh.vertex_count())) {
         for_each_index(mesh.facet_count(), chunks::light, [&](Index f) {
             for (const Index v : mesh.facet(f))
@@ -270,7 +238,7 @@ private:
                 for (const auto& [from, to] :
                      {std::pair{std::size_t{1}, j}, std::pair{j, k}, std::pair{k, n}}) {
                     if (to - from == 1) continue;
-                    way.coming.push_back(edge_of(ring[from], ring[to % n]));
+                    way.coming.push_back(pair_of(ring[from], ring[to % n]));
                     Ring cut_off;
                     for (std::size_t i = from; i <= to; ++i) cut_off.push_back(ring[i % n]);
                     rest.push_back(std::move(cut_off));
@@ -284,12 +252,13 @@ private:
     void judge(const Vec3& up, Recut& way, Recut& best) const {
         way.least_sine = 1;
         for (const Quad& quad : way.quads) way.least_sine = std::min(way.least_sine, sine_of(quad, up));
-        if (way.least_sine <= quad_splitting::least_corner || !keeps_surface(way) || !keeps_manifold(way))
-            return;
         std::vector<Edge> coming = way.coming;
         std::ranges::sort(coming);
-        if (!best.quads.empty() && std::tie(best.least_sine, coming) >= std::tie(way.least_sine, best.coming))
-            return; // of equal ones that of the lower edges
+        const bool is_better = best.quads.empty() // of equal ones that of the lower edges
+                               || std::tie(best.least_sine, coming) < std::tie(way.least_sine, best.coming);
+        if (!is_better || way.least_sine <= quad_splitting::least_corner || !keeps_surface(way)
+            || !keeps_manifold(way))
+            return;
         best.quads = way.quads;
         best.coming = std::move(coming);
         best.least_sine = way.least_sine;
@@ -301,7 +270,7 @@ private:
         const bool turned = set_right(ring);
         std::array<Vec3, 4> corners;
         for (std::size_t i = 0; i < 4; ++i) corners[i] = mesh_.positions[ring[i]];
-        return ((area_vector(corners) | up) > 0) != turned ? least_sine(corners) : -1;
+        return ((area_vector(corners) | up) > 0) != turned ? least_corner_sine(corners) : -1;
     }
 
     /// How far apart the lines through two edges pass, if these cross within the ring; 0 if not.
@@ -335,7 +304,7 @@ private:
         }
         return std::ranges::all_of(way.quads, [&](const Quad& q) {
             const auto [a, b, c, d] = q;
-            return is_near(edge_of(a, c), edge_of(b, d))
+            return is_near(pair_of(a, c), pair_of(b, d))
                    && (!is_fold(std::array{a, b, c}, std::array{a, c, d})
                        || !is_fold(std::array{b, c, d}, std::array{b, d, a}));
         });
@@ -344,7 +313,7 @@ private:
     /// Are its new edges, and the diagonals that its quads may be cut along, those of no other facet, and
     /// does no vertex lose its third facet?
     bool keeps_manifold(const Recut& way) const {
-        const auto is_free = [&](const Edge& edge) { return !pairs_.are_beside(edge, way.of.all()); };
+        const auto is_free = [&](const Edge& edge) { return !pairs_.are_together(edge, way.of.all()); };
         if (!std::ranges::all_of(way.coming, is_free)) return false;
         for (std::size_t q = 0; q < way.quads.size(); ++q)
             if (!std::ranges::all_of(way.diagonals(q), is_free)) return false;
@@ -360,13 +329,13 @@ private:
     double tolerance_;
     std::span<const VertexClass> classes_;
     const PolygonMesh& mesh_;
-    PairsOfCorners pairs_;
+    CornerPairs pairs_;
     std::vector<Index> facets_at_; // per vertex, how many
 };
 
 /// Leaves those of which no better one has a facet, an end of an edge that comes or goes, or a new edge or
 /// diagonal.
-void keep_first_ones(std::vector<Recut>& recuts) {
+std::vector<Recut> first_ones(std::vector<Recut> recuts) {
     parallel_sort(recuts, [](const Recut& a, const Recut& b) { return a.is_before(b); });
     std::vector<std::tuple<Index, Index, std::size_t>>
         claims; // an edge, or twice a vertex; a facet; the recut
@@ -388,8 +357,10 @@ void keep_first_ones(std::vector<Recut>& recuts) {
         const auto& [last_a, last_b, last] = claims[i - 1];
         if (a == last_a && b == last_b && recut != last) is_later[recut] = 1;
     }
-    std::size_t i = 0;
-    std::erase_if(recuts, [&](const Recut&) { return is_later[i++] != 0; });
+    std::vector<Recut> first;
+    for (std::size_t i = 0; i < recuts.size(); ++i)
+        if (!is_later[i]) first.push_back(std::move(recuts[i]));
+    return first;
 }
 
 } // namespace
@@ -407,16 +378,17 @@ std::size_t recut_odd_facets(double tolerance, std::span<const VertexClass> clas
                                                    part.push_back(std::move(r));
                                        });
         if (recuts.empty()) break;
-        keep_first_ones(recuts);
         FacetUnions replaced(mesh);
-        for (const Recut& recut : recuts) {
+        for (Recut& recut : first_ones(std::move(recuts))) {
             std::vector<Ring> quads;
+            quads.reserve(recut.quads.size());
             for (const Quad& q : recut.quads) {
                 quads.emplace_back(q.begin(), q.end());
                 if (recut.is_turned) std::reverse(quads.back().begin() + 1, quads.back().end());
             }
-            replaced.replace(recut.of.all(), std::move(quads));
             count += recut.of.count();
+            std::ranges::sort(recut.of.facets); // the quads stand where the lowest was
+            replaced.replace(recut.of.all(), std::move(quads));
         }
         replaced.apply(mesh);
     }

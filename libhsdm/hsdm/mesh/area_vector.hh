@@ -4,6 +4,8 @@
 #include "hsdm/core/large_vector.hh"
 #include "hsdm/polygon_mesh.hh"
 
+#include <algorithm>
+
 namespace hsdm {
 
 /// Twice the facet's area along its normal, in the mesh's units; exact for any polygon, flat or not.
@@ -56,7 +58,7 @@ inline double corner_sine(std::span<const Vec3> corners, std::size_t i, const Ve
 }
 
 /// The least of a polygon's.
-inline double least_sine(std::span<const Vec3> corners) {
+inline double least_corner_sine(std::span<const Vec3> corners) {
     const Vec3 normal = unit(area_vector(corners));
     double least = 1;
     for (std::size_t i = 0; i < corners.size(); ++i) least = std::min(least, corner_sine(corners, i, normal));

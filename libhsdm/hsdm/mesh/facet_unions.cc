@@ -103,7 +103,7 @@ void FacetUnions::unite(Index f, Index g, std::vector<Index> ring) {
 
 void FacetUnions::replace(std::span<const Index> facets, std::vector<std::vector<Index>> by) {
     for (const Index f : facets) fate_[f] = goes;
-    fate_[std::ranges::min(facets)] = static_cast<Index>(by_.size());
+    fate_[facets.front()] = static_cast<Index>(by_.size());
     by_.push_back(std::move(by));
 }
 

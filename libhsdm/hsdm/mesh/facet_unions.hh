@@ -42,7 +42,7 @@ public:
     bool is_free(Index f, Index g) const { return f != g && fate_[f] == stays && fate_[g] == stays; }
     /// Replaces facets f and g by one with this ring, or by none if it has fewer than three vertices.
     void unite(Index f, Index g, std::vector<Index> ring);
-    /// Replaces the facets by these.
+    /// Replaces the facets by these, in the place of the first.
     void replace(std::span<const Index> facets, std::vector<std::vector<Index>> by);
     /// What replaces facets stands where the lowest of them was; positions stay. Returns how often it was
     /// done.

@@ -3,7 +3,9 @@
 #include "hsdm/core/chunks.hh"
 #include "hsdm/mesh/area_vector.hh"
 #include "hsdm/mesh/constants.hh"
+#include "hsdm/mesh/corner_pairs.hh"
 #include "hsdm/mesh/edge_set.hh"
+#include "hsdm/mesh/facet_unions.hh"
 
 #include <algorithm>
 #include <array>
@@ -11,12 +13,6 @@
 
 namespace hsdm {
 namespace {
-
-using Edge = std::array<Index, 2>; // the lower vertex first
-
-Edge edge(Index a, Index b) {
-    return {std::min(a, b), std::max(a, b)};
-}
 
 /// The corner of a quad with the least sine, and that sine.
 std::pair<std::size_t, double> straightest(const PolygonMesh& mesh, std::span<const Index> quad) {
@@ -34,7 +30,7 @@ std::pair<std::size_t, double> straightest(const PolygonMesh& mesh, std::span<co
 
 /// A quad to be cut at a corner.
 struct Cut {
-    Edge diagonal;
+    VertexPair diagonal;
     std::size_t facet, corner;
 };
 
@@ -47,18 +43,35 @@ std::vector<Cut> possible_cuts(const PolygonMesh& mesh, const Test& is_due) {
             if (quad.size() != 4) continue;
             const auto [corner, sine] = straightest(mesh, quad);
             if (is_due(quad, corner, sine))
-                cuts.push_back({edge(quad[corner], quad[(corner + 2) % 4]), f, corner});
+                cuts.push_back({pair_of(quad[corner], quad[(corner + 2) % 4]), f, corner});
         }
     };
     return collected<Cut>(mesh.facet_count(), chunks::usual, find);
 }
 
+std::vector<Index> ends_of(std::span<const Cut> cuts) {
+    std::vector<Index> ends;
+    ends.reserve(2 * cuts.size());
+    for (const Cut& cut : cuts) ends.insert(ends.end(), cut.diagonal.begin(), cut.diagonal.end());
+    return ends;
+}
+
+/// Makes the cuts; returns how many.
+std::size_t make(std::span<const Cut> cuts, PolygonMesh& mesh) {
+    FacetUnions made(mesh);
+    for (const Cut& cut : cuts) {
+        const auto ring = mesh.facet(cut.facet);
+        const auto at = [&](std::size_t i) { return ring[(cut.corner + i) % 4]; };
+        made.replace(std::array{static_cast<Index>(cut.facet)},
+                     {{at(0), at(1), at(2)}, {at(0), at(2), at(3)}});
+    }
+    return made.apply(mesh);
+}
+
 /// Removes the cuts whose diagonal is an edge already or that of a facet before; leaves them by facet.
 void keep_allowed(const PolygonMesh& mesh, std::vector<Cut>& due) {
     if (due.empty()) return;
-    std::vector<Index> ends;
-    for (const Cut& cut : due) ends.insert(ends.end(), cut.diagonal.begin(), cut.diagonal.end());
-    const EdgeSet edges(mesh, ends);
+    const EdgeSet edges(mesh, ends_of(due));
     std::sort(due.begin(), due.end(), [](const Cut& a, const Cut& b) {
         return a.diagonal != b.diagonal ? a.diagonal < b.diagonal : a.facet < b.facet;
     });
@@ -68,33 +81,13 @@ void keep_allowed(const PolygonMesh& mesh, std::vector<Cut>& due) {
     std::sort(due.begin(), due.end(), [](const Cut& a, const Cut& b) { return a.facet < b.facet; });
 }
 
-/// Makes those that are allowed; returns how many.
-std::size_t make(std::vector<Cut> due, PolygonMesh& mesh) {
-    keep_allowed(mesh, due);
-    if (due.empty()) return 0;
-    PolygonMesh cut;
-    auto next = due.begin();
-    for (std::size_t f = 0; f < mesh.facet_count(); ++f) {
-        const auto ring = mesh.facet(f);
-        if (next == due.end() || next->facet != f) {
-            cut.add_facet(ring);
-            continue;
-        }
-        const std::size_t i = next++->corner;
-        cut.add_facet(std::array{ring[i], ring[(i + 1) % 4], ring[(i + 2) % 4]});
-        cut.add_facet(std::array{ring[i], ring[(i + 2) % 4], ring[(i + 3) % 4]});
-    }
-    mesh.corners = std::move(cut.corners);
-    mesh.first = std::move(cut.first);
-    return due.size();
-}
-
 } // namespace
 
 std::size_t cut_straight_corners(PolygonMesh& mesh, double least_sine) {
-    return make(possible_cuts(mesh, [&](std::span<const Index>, std::size_t,
-                                        double sine) { return sine < least_sine; }),
-                mesh);
+    const auto is_due = [&](std::span<const Index>, std::size_t, double sine) { return sine < least_sine; };
+    std::vector<Cut> due = possible_cuts(mesh, is_due);
+    keep_allowed(mesh, due);
+    return make(due, mesh);
 }
 
 std::size_t cut_doubtful_quads(PolygonMesh& mesh) {
@@ -105,7 +98,13 @@ std::size_t cut_doubtful_quads(PolygonMesh& mesh) {
         return std::abs(sine) < quad_splitting::straight
                && diagonal(corner + 1) < (1 + quad_splitting::straight) * diagonal(corner);
     };
-    return make(possible_cuts(mesh, is_doubtful), mesh);
+    std::vector<Cut> due = possible_cuts(mesh, is_doubtful);
+    if (due.empty()) return 0;
+    const CornerPairs pairs(mesh, ends_of(due));
+    std::erase_if(due, [&](const Cut& cut) {
+        return pairs.are_together(cut.diagonal, std::array{static_cast<Index>(cut.facet)});
+    });
+    return make(due, mesh);
 }
 
 } // namespace hsdm

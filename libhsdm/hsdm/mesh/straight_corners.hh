@@ -14,7 +14,7 @@ std::size_t cut_straight_corners(PolygonMesh& mesh, double least_sine);
 /// The same where rounding decides whether a quad is a triangle: at a corner that is straight to
 /// quad_splitting::straight, the diagonal beside it the shorter one. Cut along that, as quads usually are, it
 /// has one triangle next to no area, whose corner lies on the other one, and whether the facets round it pass
-/// through that hangs on the last digit.
+/// through that hangs on the last digit. Not where another facet has both ends of the new edge.
 std::size_t cut_doubtful_quads(PolygonMesh& mesh);
 
 } // namespace hsdm

@@ -72,6 +72,7 @@ void note_counts(const DualContour& facets, Report& report) {
     report.rejected["corners_merged"] = facets.corners_merged;
     report.rejected["flat_corners_merged"] = facets.flat_corners;
     report.rejected["straight_vertices_dropped"] = facets.straight;
+    report.rejected["quads_cut_straight"] = facets.cut;
     report.rejected["facets_recut"] = facets.recut;
     report.rejected["edges_halved"] = facets.midpoints;
     report.rejected["doublets_merged"] = facets.doublets;
