@@ -261,8 +261,7 @@ TEST_CASE("a bowl whose outer bottom nobody saw is closed below its inner one", 
     CHECK(completed.report.mesh.euler == 2);
 }
 
-TEST_CASE("a bore that a scanner looked through stays open, though nobody saw its wall",
-          "[completion][slow]") {
+TEST_CASE("a bore that a scanner looked through stays open, though nobody saw its wall", "[completion]") {
     for (std::uint64_t seed = 1; seed <= 2; ++seed) {
         // A block with a bore along x; behind it a wall, which one of the scanners sees through the bore.
         Random random(seed);
@@ -298,7 +297,7 @@ TEST_CASE("a bore of whose wall the ends alone were seen goes through, however l
 }
 
 TEST_CASE("bores that cross, and one that ends in a slot, go through though their middle was not seen",
-          "[completion][slow]") {
+          "[completion]") {
     const double half_pi = 0.5 * std::numbers::pi, radius = 0.22;
     const Solid one = cylinder(radius, 4).placed(turned({0, 1, 0}, half_pi)),
                 other = cylinder(radius, 4).placed(turned({1, 0, 0}, half_pi)), slot = box({0.4, 4, 1});

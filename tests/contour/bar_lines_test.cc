@@ -174,7 +174,7 @@ TEST_CASE("grid points move into bars and bores, and nowhere else", "[contour]")
     }
 }
 
-TEST_CASE("bars and bores thinner than a voxel hold together", "[contour][slow]") {
+TEST_CASE("bars and bores thinner than a voxel hold together", "[contour]") {
     const auto right = [](const Counts& counts) { return std::to_string(counts.right) + " right"; };
     const Counts bars = count_right(box({9, 0.4, 0.4}), 14.7, 2);
     CHECK(bars.right == bars.all);

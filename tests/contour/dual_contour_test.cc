@@ -151,7 +151,7 @@ TEST_CASE("nested spheres half a voxel apart stay two closed surfaces", "[contou
     }
 }
 
-TEST_CASE("strays all around a sphere leave it one closed surface", "[contour][slow]") {
+TEST_CASE("strays all around a sphere leave it one closed surface", "[contour]") {
     for (std::uint64_t seed = 1; seed <= 5; ++seed) {
         INFO("seed " << seed);
         const support::Solid solid = support::sphere(1);

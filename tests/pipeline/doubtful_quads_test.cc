@@ -46,7 +46,7 @@ TEST_CASE(
             const OctreeLevel level = extract_level(octree, 5);
             const NormalSets sets = build_normal_sets(octree, level);
             DualContourOptions as_they_come;
-            as_they_come.flat_corners = false;
+            as_they_come.better_quads = false;
             CHECK(doubtful_quads(dual_contour(octree, level, sets, as_they_come).mesh) > 0);
             PolygonMesh mesh = dual_contour(octree, level, sets).mesh;
             CHECK(doubtful_quads(mesh) == 0);

@@ -60,7 +60,7 @@ Part coarse_part(const support::Solid& solid, const support::SampleOptions& opti
     Part part{build_octree(support::sample(solid, options)), {}, 0};
     const OctreeLevel level = extract_level(part.octree, depth);
     DualContourOptions how;
-    how.flat_corners = false; // as for every adaptive grid
+    how.better_quads = false; // as for every adaptive grid
     const PolygonMesh fine =
         dual_contour(part.octree, level, build_normal_sets(part.octree, level), how).mesh;
     part.error = share * part.octree.bounds.diagonal();

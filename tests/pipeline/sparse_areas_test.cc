@@ -50,7 +50,7 @@ bool warns_of_small_voxels(const Report& report) {
 } // namespace
 
 TEST_CASE("voxels too small for a surface of these points to close are warned of where they were asked for",
-          "[pipeline][slow]") {
+          "[pipeline]") {
     const PointCloud even = sample(sphere(1), {.points = 5000});
     Octree octree;
     CHECK(voxels_too_small(level_of(even, 5, octree)).count == 0); // 1.1 points to a voxel

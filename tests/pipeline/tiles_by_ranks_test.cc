@@ -101,7 +101,7 @@ TEST_CASE("several ranks give the mesh of one piece, bit for bit", "[pipeline][t
 }
 
 TEST_CASE("tiles of two ranks that know too little around them are made again with more",
-          "[pipeline][tiles][slow]") {
+          "[pipeline][tiles]") {
     const PointCloud cloud = bored_box();
     TileOptions tiles = small_tiles();
     tiles.most_points = 5000;
@@ -141,7 +141,7 @@ TEST_CASE("ranks choose the voxels together", "[pipeline][tiles][slow]") {
     check_same_by_ranks(reconstruct(cloud, {}), *result);
 }
 
-TEST_CASE("ranks measure points that are far from all facets they were sent", "[pipeline][tiles][slow]") {
+TEST_CASE("ranks measure points that are far from all facets they were sent", "[pipeline][tiles]") {
     PointCloud cloud = bored_box();
     PointCloud small = support::sample(support::box({0.1, 0.1, 0.1}), {.points = 600}); // is dropped
     for (Vec3& p : small.positions) p += Vec3(2, 1.5, 1);

@@ -181,7 +181,7 @@ TEST_CASE("what only some parts of a cloud have is left out, and told", "[pipeli
     CHECK(tiles.report.options.at("left_out") == "colours, range");
 }
 
-TEST_CASE("a run with colours goes on where one was ended", "[pipeline][tiles][slow]") {
+TEST_CASE("a run with colours goes on where one was ended", "[pipeline][tiles]") {
     const PointCloud cloud = painted_torus(true);
     const ReconstructOptions options{.depth = 5, .threads = 2};
     const Reconstruction whole = reconstruct(cloud, options);

@@ -148,7 +148,7 @@ TEST_CASE("noise that is far wider than the voxels asked for is refused in tiles
 }
 
 TEST_CASE("voxels of one size are done in tiles where points are far sparser in some places",
-          "[pipeline][tiles][slow]") {
+          "[pipeline][tiles]") {
     const PointCloud cloud = support::thinned_on_one_side(
         support::sample(support::sphere(1), {.points = 20000}), Vec3(1, 0, 0), 0.3, 30);
     ReconstructOptions options{.holes = Holes::keep};

@@ -457,15 +457,15 @@ DualContour dual_contour(const Octree& octree, const OctreeLevel& level, const N
     result.drawn_in = draw_in_spikes(octree, level, result.voxel, result.mesh);
     result.reached = reach_points(octree, level, result.voxel, far, result.mesh);
     // After all that decides topology by numbers of facets, so that it is the same either way.
-    if (options.flat_corners)
+    if (options.better_quads)
         result.flat_corners =
             changed(collapse_flat_corners(sheets::plane_error * h, result.classes, result.mesh));
     result.straight = changed(drop_straight_vertices(sheets::plane_error * h, result.mesh));
     if (result.straight > 0) remove_isolated_vertices(result.mesh);
-    if (options.flat_corners) {
+    if (options.better_quads) {
         // first, as their triangles may become quads with others
-        result.cut = changed(cut_doubtful_quads(result.mesh));
-        result.recut = changed(recut_odd_facets(sheets::plane_error * h, result.classes, result.mesh));
+        result.quads_cut = changed(cut_doubtful_quads(result.mesh));
+        result.facets_recut = changed(recut_odd_facets(sheets::plane_error * h, result.classes, result.mesh));
     }
     changed(collapse_flat_facets(octree.origin, result.mesh));
     if (options.part.is_part())

@@ -28,7 +28,7 @@ struct DualContourOptions {
     bool fill = true; ///< close small boundary loops
     /// voxels: not wider ones than that in whose middle points lack (middle_of_hole)
     double widest_free = std::numeric_limits<double>::infinity();
-    bool flat_corners = true; ///< better quads: collapse_flat_corners, cut_doubtful_quads, recut_odd_facets
+    bool better_quads = true; ///< collapse_flat_corners, cut_doubtful_quads, recut_odd_facets
     /// the data go round the whole solid: it has no border (label_grid_signs, trim_unsupported)
     bool all_round = false;
     PartVoxels part{};    ///< where the level is part of a larger one
@@ -56,8 +56,8 @@ struct DualContour {
     std::size_t corners_merged = 0;
     std::size_t flat_corners = 0; ///< vertices merged into others on creases (collapse_flat_corners)
     std::size_t straight = 0;     ///< vertices of two facets taken out of them (drop_straight_vertices)
-    std::size_t cut = 0;          ///< quads cut at a straight corner (cut_doubtful_quads)
-    std::size_t recut = 0;        ///< facets replaced by quads over the same vertices (recut_odd_facets)
+    std::size_t quads_cut = 0;    ///< quads cut at a straight corner (cut_doubtful_quads)
+    std::size_t facets_recut = 0; ///< facets replaced by quads over the same vertices (recut_odd_facets)
     std::size_t midpoints = 0;    ///< vertices added so that no two mesh edges join the same two vertices
     std::size_t doublets = 0;     ///< pairs of facets round one vertex merged into one facet
     Occurrences splinters;        ///< facets of splinters, removed

@@ -7,6 +7,7 @@
 #include "hsdm/mesh/area_vector.hh"
 #include "hsdm/mesh/constants.hh"
 #include "hsdm/mesh/corner_pairs.hh"
+#include "hsdm/mesh/facet_normal.hh"
 #include "hsdm/mesh/facet_unions.hh"
 
 #include <algorithm>
@@ -283,8 +284,7 @@ private:
         };
         if (side(other[0]) * side(other[1]) >= 0) return 0;
         const auto& p = mesh_.positions;
-        const Vec3 across = (p[one[1]] - p[one[0]]) % (p[other[1]] - p[other[0]]);
-        return std::abs(unit(across) | (p[other[0]] - p[one[0]]));
+        return line_distance(p[one[0]], p[one[1]], p[other[0]], p[other[1]]);
     }
 
     /// Does no new edge or quad bend as at a crease, and are edges that go near those that come, and the two

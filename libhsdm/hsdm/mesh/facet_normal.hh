@@ -32,6 +32,13 @@ inline Vec3 unit_or_zero(const Vec3& v) {
     return length > 0 && std::isfinite(length) ? v / length : Vec3(0, 0, 0);
 }
 
+/// Distance between the lines a-b and c-d: how far a quad with these diagonals is off a plane.
+inline double line_distance(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+    const Vec3 across = (b - a) % (d - c);
+    const double length = across.norm();
+    return length > 0 ? std::abs(across | (c - a)) / length : 0;
+}
+
 /// Angle between two directions that need not be unit vectors, in [0, pi]; exact for small angles too.
 inline double angle_between(const Vec3& a, const Vec3& b) {
     return std::atan2((a % b).norm(), a | b);

@@ -54,8 +54,8 @@ private:
     std::vector<std::vector<std::vector<Index>>> by_;
 };
 
-/// Makes one facet of each of these (ascending) and the one across its longest side, if that is none of them,
-/// or if it is its longest, too: what lies in one line with that side leaves the other as it is but for more
+/// Makes one facet of each of these (ascending) and the one across its longest side, if that is none of them:
+/// what lies in one line with that side leaves the other as it is but for more
 /// corners on it. Not where that side is on a border, nor where a corner would be there twice; each facet
 /// takes part once. The same whichever way round facets are. Vertices stay. Returns how many were united.
 /// O(facets) if there are any.

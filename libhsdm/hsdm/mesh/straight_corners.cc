@@ -16,14 +16,15 @@ namespace {
 
 /// The corner of a quad with the least sine, and that sine.
 std::pair<std::size_t, double> straightest(const PolygonMesh& mesh, std::span<const Index> quad) {
-    const Vec3 up = unit(area_vector(mesh, quad));
+    std::array<Vec3, 4> p;
+    for (std::size_t i = 0; i < 4; ++i) p[i] = mesh.positions[quad[i]];
+    const Vec3 up = unit(area_vector(p));
     std::pair<std::size_t, double> result{0, 1};
     for (std::size_t i = 0; i < 4; ++i) {
-        const Vec3& p = mesh.positions[quad[i]];
-        const Vec3 a = mesh.positions[quad[(i + 1) % 4]] - p, b = mesh.positions[quad[(i + 3) % 4]] - p;
-        const double sides = a.norm() * b.norm();
-        const double sine = sides > 0 ? ((a % b) | up) / sides : 1;
-        if (sine < result.second && (a | b) < 0) result = {i, sine}; // a sharp corner is not cut in two
+        if (((p[(i + 1) % 4] - p[i]) | (p[(i + 3) % 4] - p[i])) >= 0)
+            continue; // sharp ones are not cut in two
+        const double sine = corner_sine(p, i, up);
+        if (sine < result.second) result = {i, sine};
     }
     return result;
 }

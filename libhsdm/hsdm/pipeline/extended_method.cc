@@ -40,7 +40,7 @@ DualContourOptions options_for(const MethodInput& in, double spacing) {
     const double spacing_in_voxels = spacing / in.level.voxel_size;
     DualContourOptions result;
     result.fill = in.options.holes != Holes::keep;
-    result.flat_corners = !wants_adaptive(in.options); // strips of an adaptive grid keep to rows of voxels
+    result.better_quads = !wants_adaptive(in.options); // strips of an adaptive grid keep to rows of voxels
     if (in.options.holes == Holes::close) {
         result.holes = every_hole;
     } else {
@@ -72,8 +72,8 @@ void note_counts(const DualContour& facets, Report& report) {
     report.rejected["corners_merged"] = facets.corners_merged;
     report.rejected["flat_corners_merged"] = facets.flat_corners;
     report.rejected["straight_vertices_dropped"] = facets.straight;
-    report.rejected["quads_cut_straight"] = facets.cut;
-    report.rejected["facets_recut"] = facets.recut;
+    report.rejected["quads_cut_straight"] = facets.quads_cut;
+    report.rejected["facets_recut"] = facets.facets_recut;
     report.rejected["edges_halved"] = facets.midpoints;
     report.rejected["doublets_merged"] = facets.doublets;
     report.rejected["facets_of_splinters"] = facets.splinters.count;

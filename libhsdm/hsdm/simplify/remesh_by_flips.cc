@@ -7,6 +7,7 @@
 #include "hsdm/core/parallel_sort.hh"
 #include "hsdm/mesh/constants.hh"
 #include "hsdm/mesh/editable_triangles.hh"
+#include "hsdm/mesh/facet_normal.hh"
 #include "hsdm/mesh/straight_corners.hh"
 #include "hsdm/simplify/constants.hh"
 #include "hsdm/simplify/triangle_shape.hh"
@@ -78,11 +79,9 @@ private:
 
     Vec3 middle(Index a, Index b) const { return 0.5 * (at(a) + at(b)); }
 
-    /// Distance between the lines a-b and c-d: how far a quad with these diagonals is off a plane.
+    /// How far a quad with the diagonals a-b and c-d is off a plane.
     double warp(Index a, Index b, Index c, Index d) const {
-        const Vec3 across = (at(b) - at(a)) % (at(d) - at(c));
-        const double length = across.norm();
-        return length > 0 ? std::abs(across | (at(c) - at(a))) / length : 0;
+        return line_distance(at(a), at(b), at(c), at(d));
     }
 
     /// Is the middle of an edge on the fine surface? `none`: not looked up yet.
