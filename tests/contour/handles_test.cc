@@ -275,6 +275,63 @@ TEST_CASE("a ring narrower than points are apart is cut, in full view of them", 
     CHECK(faults(mesh) == "");
 }
 
+TEST_CASE("a part tells whether it looked farther behind its rings than it knows", "[contour]") {
+    const BridgedBoxes boxes(false, 5);
+    const Stages& stages = boxes.stages;
+    const std::vector<Index>& voxel = boxes.part.voxel;
+    // Both ends of the bridge are looked at; what lies behind it is a box of far more facets.
+    const double voxel_size = stages.level.voxel_size;
+    const auto cut = [&](double near, double own) {
+        const auto is_within = [&](Index v, double distance) {
+            const auto at = morton_decode(stages.level.codes[v]);
+            Vec3 centre = stages.octree.origin;
+            for (unsigned k = 0; k < 3; ++k) centre[k] += (at[k] + 0.5) * voxel_size;
+            return std::abs(centre[0]) < distance && std::hypot(centre[1], centre[2]) < distance;
+        };
+        PolygonMesh mesh = boxes.mesh;
+        std::optional<FacetLinks> links;
+        const PartVoxels part{[&](Index v) { return is_within(v, own); },
+                              [&](Index v) { return is_within(v, near); }};
+        const HandleCounts counts =
+            cut_handles(stages.octree, stages.level, stages.sets, voxel, mesh, links, part);
+        CHECK(counts.cut > 0);
+        return counts.looked_far;
+    };
+    CHECK_FALSE(cut(2, 2));
+    CHECK(cut(4 * voxel_size, 4 * voxel_size));
+    CHECK_FALSE(cut(16 * voxel_size, 4 * voxel_size)); // 216 facets are 8 to each side of a ring's end
+    CHECK_FALSE(cut(4 * voxel_size, 0));               // no ring is its own
+}
+
+TEST_CASE("the same rings are cut by any number of threads, round by round", "[contour][determinism]") {
+    // Bars of two spacings, in a lattice: hundreds of rings are doubtful, and some of those beside each
+    // other.
+    Solid bars = box({0.06, 0.06, 1.2});
+    for (const double x : {-0.4, 0.0, 0.4})
+        for (const double y : {-0.4, 0.0, 0.4}) {
+            bars = bars | box({0.06, 0.06, 0.86}).placed(turned({0, 0, 1}, 0, {x, y, 0}));
+            bars = bars | box({0.86, 0.06, 0.06}).placed(turned({0, 0, 1}, 0, {0, x, y}));
+            bars = bars | box({0.06, 0.86, 0.06}).placed(turned({0, 0, 1}, 0, {x, 0, y}));
+        }
+    const PointCloud cloud = sample(bars.placed(turned({1, 2, 3}, 0.7)), {.points = 9000, .seed = 7});
+    std::vector<std::size_t> cut;
+    std::vector<std::vector<Index>> corners;
+    for (const int threads : {1, 2, 5}) {
+        ReconstructOptions options;
+        options.threads = threads;
+        const Reconstruction made = reconstruct(cloud, options);
+        cut.push_back(made.report.rejected.at("handles_cut"));
+        corners.push_back({});
+        for (const auto f : made.mesh.faces())
+            for (const auto v : f.vertices()) corners.back().push_back(static_cast<Index>(v.idx()));
+    }
+    CHECK(cut[0] > 3);
+    CHECK(cut[1] == cut[0]);
+    CHECK(cut[2] == cut[0]);
+    CHECK(corners[1] == corners[0]);
+    CHECK(corners[2] == corners[0]);
+}
+
 TEST_CASE("holes and rods of the part that points speak for stay, however short the way round", "[contour]") {
     const double voxel = 1.0 / 16;
     for (const double diameter : {1.2, 2.0}) { // voxels

@@ -424,7 +424,7 @@ DualContour dual_contour(const Octree& octree, const OctreeLevel& level, const N
     };
     const HandleCounts handles =
         cut_handles(octree, level, sets, result.voxel, result.mesh, result.links, options.part);
-    result.handles_cut = handles.cut, result.is_crowded = handles.is_crowded;
+    result.handles_cut = handles.cut, result.looked_far = handles.looked_far;
     edited |= result.handles_cut > 0;
     if (options.fill) {
         FillHolesOptions holes = options.holes;

@@ -54,22 +54,9 @@ inline constexpr double beside_place = 1.5;
 /// Why: a web that one voxel decides has rings of four to six edges; half as many more for those of several.
 inline constexpr int reach = 4;
 
-/// facets: seen on both sides of a ring that do not meet; then they are two parts, or meet far off.
-/// Why: a pin that a ring of nine edges goes round is shorter than that, unless it is a rod.
-inline constexpr std::size_t far = 4096;
-
 /// facets: of a part that a ring cuts off, fewest.
 /// Why: those of a cube of six voxels; what is smaller may be a knob or a spike of the part that it is on.
 inline constexpr std::size_t fewest_of_part = 216;
-
-/// levels: from a voxel to the block that shares its work; blocks do not know of each other.
-/// Why: as tiles consist of whole ones (cell_depth_of), each knows all of those that it owns.
-inline constexpr int block_levels = 3;
-
-/// facets: looked at in a block, in all; after that no more rings are looked for there.
-/// Why: bounds the time where normals are at random; what 16 vertices take that look behind all rings beside
-/// theirs. Two rounds of all vertices take a tenth.
-inline constexpr std::size_t most_work = std::size_t{1} << 17;
 
 } // namespace hsdm::handles
 

@@ -1,10 +1,10 @@
 #include "hsdm/contour/handles.hh"
 
 #include "hsdm/contour/constants.hh"
+#include "hsdm/contour/ring_search.hh"
 #include "hsdm/contour/witnesses.hh"
 #include "hsdm/core/chunks.hh"
 #include "hsdm/core/constants.hh"
-#include "hsdm/core/interruption.hh"
 #include "hsdm/core/large_vector.hh"
 #include "hsdm/mesh/area_vector.hh"
 #include "hsdm/mesh/copy_vertex.hh"
@@ -12,9 +12,9 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <utility>
 
 namespace hsdm {
@@ -58,236 +58,224 @@ std::vector<std::uint8_t> voxels_of_walls(const NormalSets& sets, std::span<cons
     return result;
 }
 
-/// The vertices and facets within a few edges of a vertex, and the rings of edges among them.
-class Vicinity {
-public:
-    Vicinity(const PolygonMesh& mesh, const FacetLinks& links)
-        : mesh_(mesh), links_(links), side_out_(large_vector<Index>(mesh.vertex_count(), no_index)) {
-        for_each_in_order(mesh.corners.size(), [&](std::size_t c) {
-            if (links.accepted[links.facet[c]]) side_out_[mesh.corners[c]] = static_cast<Index>(c);
-        });
-        assign_large(place_, mesh.vertex_count(), no_index);
-        assign_large(facet_place_, mesh.facet_count(), no_index);
-    }
-
-    /// The shortest ring round the vertex that does not bound a disc of the facets gathered; empty if there
-    /// is none. Twice the reach and one edge is the longest.
-    const std::vector<Index>& ring_at(Index root) {
-        gather(root);
-        ring_.clear();
-        const Edge* const shortest = left_over();
-        if (shortest) make_ring(*shortest);
-        for (const Node& node : nodes_) place_[node.vertex] = no_index;
-        for (const Index f : facets_) facet_place_[f] = no_index;
-        return ring_;
-    }
-
-    /// The side that runs from one vertex to another, or no_index.
-    Index side_between(Index from, Index to) const {
-        Index found = no_index;
-        for_each_side_out(from, [&](Index c) {
-            if (end(c) == to) found = c;
-        });
-        return found;
-    }
-    Index end(Index c) const { return mesh_.corners[next_side(mesh_, links_.facet[c], c)]; }
-
-private:
-    struct Node {
-        Index vertex, parent; ///< place of the parent among the nodes
-        int depth;
-        double length; ///< of the way from the root
-    };
-    struct Edge {
-        double length; ///< of the ring that it closes
-        Index side, a, b;
-    };
-
-    template <class F>
-    void for_each_side_out(Index v, F&& f) const {
-        const Index first = side_out_[v];
-        if (first == no_index) return;
-        Index c = first;
-        do { // one way round, as far as it goes
-            f(c);
-            c = links_.twin[previous_side(mesh_, links_.facet[c], c)];
-        } while (c != first && c != no_index);
-        if (c == first) return;
-        for (c = links_.twin[first]; c != no_index; c = links_.twin[c]) { // the other way from the first
-            c = next_side(mesh_, links_.facet[c], c);
-            f(c);
-        }
-    }
-
-    void gather(Index root) {
-        nodes_.assign(1, {root, 0, 0, 0});
-        facets_.clear();
-        place_[root] = 0;
-        for (Index i = 0; i < nodes_.size() && nodes_[i].depth < handles::reach; ++i) {
-            const Node node = nodes_[i];
-            beside_.clear();
-            for_each_side_out(node.vertex, [&](Index c) { beside_.push_back(end(c)); });
-            std::ranges::sort(beside_); // the way round a vertex turns with the normals
-            for (const Index w : beside_) {
-                if (place_[w] != no_index) continue;
-                place_[w] = static_cast<Index>(nodes_.size());
-                nodes_.push_back({w, i, node.depth + 1,
-                                  node.length + (mesh_.positions[w] - mesh_.positions[node.vertex]).norm()});
-            }
-        }
-        for (const Node& node : nodes_)
-            for_each_side_out(node.vertex, [&](Index c) {
-                const Index f = links_.facet[c];
-                if (facet_place_[f] != no_index) return;
-                for (const Index v : mesh_.facet(f))
-                    if (place_[v] == no_index) return;
-                facet_place_[f] = static_cast<Index>(facets_.size());
-                facets_.push_back(f);
-            });
-    }
-
-    /// The edges neither in the tree of shortest ways nor crossed by a tree of facets, which the edges of the
-    /// longest rings join first: each closes a ring that bounds nothing. Returns the one of the shortest.
-    const Edge* left_over() {
-        edges_.clear();
-        for (const Index f : facets_)
-            for (Index c = mesh_.first[f]; c < mesh_.first[f + 1]; ++c) {
-                const Index twin = links_.twin[c];
-                if (twin != no_index && twin < c && facet_place_[links_.facet[twin]] != no_index) continue;
-                const Index a = place_[mesh_.corners[c]], b = place_[end(c)];
-                if (nodes_[a].parent == b || nodes_[b].parent == a) continue;
-                const Vec3 way = mesh_.positions[nodes_[b].vertex] - mesh_.positions[nodes_[a].vertex];
-                edges_.push_back({nodes_[a].length + nodes_[b].length + way.norm(), c, a, b});
-            }
-        std::sort(edges_.begin(), edges_.end(), [](const Edge& e, const Edge& f) {
-            return e.length > f.length || (e.length == f.length && e.side < f.side);
-        });
-        joined_.resize(facets_.size() + 1); // the last: all that lies outside
-        std::iota(joined_.begin(), joined_.end(), Index{0});
-        const Edge* shortest = nullptr;
-        for (const Edge& e : edges_) {
-            const Index twin = links_.twin[e.side];
-            const Index beyond = twin == no_index ? no_index : facet_place_[links_.facet[twin]];
-            const Index x = find(facet_place_[links_.facet[e.side]]);
-            const Index y = find(beyond == no_index ? static_cast<Index>(facets_.size()) : beyond);
-            if (x == y)
-                shortest = &e;
-            else
-                joined_[x] = y;
-        }
-        return shortest;
-    }
-
-    Index find(Index i) {
-        while (joined_[i] != i) i = joined_[i] = joined_[joined_[i]];
-        return i;
-    }
-
-    void make_ring(const Edge& e) {
-        std::array<std::vector<Index>, 2> way;
-        for (const unsigned k : {0u, 1u})
-            for (Index i = k == 0 ? e.a : e.b;; i = nodes_[i].parent) {
-                way[k].push_back(i);
-                if (i == 0) break;
-            }
-        while (way[0].size() > 1 && way[1].size() > 1
-               && way[0][way[0].size() - 2] == way[1][way[1].size() - 2])
-            way[0].pop_back(), way[1].pop_back();
-        way[1].pop_back(); // where they meet
-        for (const Index i : way[0]) ring_.push_back(nodes_[i].vertex);
-        for (auto i = way[1].rbegin(); i != way[1].rend(); ++i) ring_.push_back(nodes_[*i].vertex);
-    }
-
-    const PolygonMesh& mesh_;
-    const FacetLinks& links_;
-    std::vector<Index> side_out_;    // per vertex, a side that starts there
-    std::vector<Index> place_;       // per vertex, among the nodes
-    std::vector<Index> facet_place_; // per facet, among those gathered
-    std::vector<Node> nodes_;
-    std::vector<Index> facets_;
-    std::vector<Edge> edges_;
-    std::vector<Index> joined_;
-    std::vector<Index> ring_, beside_;
+/// A ring that is to be cut.
+struct Ring {
+    Index root; ///< the vertex that it was found at
+    std::vector<Index> vertices, sides;
 };
 
-/// What was looked at in each block of voxels, by the first voxel of each.
-class WorkOfBlocks {
+/// What is asked about rings, by all threads; what they find out is the same whoever does.
+class RingQuestions {
 public:
-    explicit WorkOfBlocks(const OctreeLevel& level) : codes_(level.codes) {}
+    RingQuestions(const VertexFans& around, const Witnesses& speakers, std::span<const Index> voxel,
+                  const PartVoxels& part)
+        : fans(around),
+          witnesses(speakers),
+          voxel_(voxel),
+          part_(part),
+          spoken_for_(large_vector<std::uint8_t>(around.mesh.facet_count())),
+          notes_(large_vector<std::uint32_t>(around.mesh.vertex_count())) {}
 
-    std::size_t& of(Index voxel) {
-        constexpr int to_block = 3 * handles::block_levels;
-        if (work_.empty()) work_ = large_vector<std::size_t>(codes_.size()); // most meshes have no doubts
-        const auto first = std::ranges::lower_bound(codes_, codes_[voxel] >> to_block << to_block);
-        return work_[static_cast<std::size_t>(first - codes_.begin())];
+    bool is_own(Index vertex) const { return part_.is_part() && part_.owns(voxel_at(vertex)); }
+    bool is_far(Index facet) const {
+        return part_.is_part() && !std::ranges::all_of(fans.mesh.facet(facet), [&](Index v) {
+                   return part_.is_near(voxel_at(v));
+               });
     }
-    /// Did a block whose first voxel is one of these take more than half of what it may?
-    bool is_crowded(const PartVoxels& voxels) const {
-        for (Index v = 0; v < work_.size(); ++v)
-            if (2 * work_[v] > handles::most_work && voxels.owns(v)) return true;
-        return false;
+    /// Witnesses are heard once for each facet: some twenty rings pass it.
+    bool speak_for(Index facet) const {
+        enum Answer : std::uint8_t { not_asked, no, yes };
+        return known(spoken_for_[facet], [&] { return witnesses.speak_for(facet) ? yes : no; }) == yes;
     }
+    /// What find() tells of a vertex, other than 0; kept.
+    template <class Find>
+    std::uint32_t note(Index vertex, Find&& find) const {
+        return known(notes_[vertex], find);
+    }
+
+    const VertexFans& fans;
+    const Witnesses& witnesses;
 
 private:
-    const std::vector<MortonCode>& codes_;
-    std::vector<std::size_t> work_; // facets
+    Index voxel_at(Index vertex) const { return voxel_[fans.mesh.origin[vertex]]; }
+
+    template <class T, class Find>
+    static T known(T& place, Find&& find) {
+        const std::atomic_ref<T> kept(place);
+        T value = kept.load(std::memory_order_relaxed);
+        if (value == T{}) kept.store(value = find(), std::memory_order_relaxed);
+        return value;
+    }
+
+    std::span<const Index> voxel_; // per origin of the mesh's vertices
+    const PartVoxels& part_;
+    mutable std::vector<std::uint8_t> spoken_for_; // per facet
+    mutable std::vector<std::uint32_t> notes_;     // per vertex
 };
 
-/// One round: all rings that can be cut without touching each other.
-class Round {
+/// Judges the rings at vertices, one after the other. For one thread.
+class RingJudge {
 public:
-    Round(const Octree& octree, const OctreeLevel& level, const NormalSets& sets,
-          std::span<const Index> voxel, WorkOfBlocks& done, PolygonMesh& mesh,
-          std::optional<FacetLinks>& links)
-        : mesh_(mesh),
-          known_links_(links),
+    explicit RingJudge(const RingQuestions& ask) : ask_(ask), fans_(ask.fans), search_(ask.fans) {}
+
+    /// The ring at a vertex, if it is to be cut.
+    std::optional<Ring> ring_to_cut(Index root) {
+        const bool is_own = ask_.is_own(root);
+        std::vector<Index> ring = search_.ring_at(root);
+        std::vector<Index> sides = fans_.sides_of(ring);
+        if (sides.size() < 3) return std::nullopt;
+        const Witnesses& witnesses = ask_.witnesses;
+        const bool is_denied = witnesses.deny(ring), is_narrow = !is_denied && witnesses.is_narrow(ring);
+        const bool is_contradicted = share_contradicted(sides) >= handles::least_contradicted;
+        if (!(is_denied || is_narrow || is_contradicted)) return std::nullopt;
+        has_looked_far_ = false;
+        const bool is_cut = !bounds(sides) // to look behind it takes longest
+                            && (is_denied
+                                || ((is_narrow || are_contradicted_beside(sides)) && !witnesses.surround(ring)
+                                    && !witnesses.are_missing_across(ring, fans_.facets_beside(sides))));
+        looked_far_ |= is_own && has_looked_far_;
+        if (!is_cut) return std::nullopt;
+        return Ring{root, std::move(ring), std::move(sides)};
+    }
+    bool looked_far() const { return looked_far_; }
+
+private:
+    /// Of the facets beside a ring, how many no points speak for.
+    std::uint32_t contradicted_beside(std::span<const Index> sides) const {
+        const std::vector<Index> beside = fans_.facets_beside(sides);
+        return static_cast<std::uint32_t>(
+            std::ranges::count_if(beside, [&](Index f) { return !ask_.speak_for(f); }));
+    }
+    double share_contradicted(std::span<const Index> sides) const {
+        return contradicted_beside(sides) / static_cast<double>(2 * sides.size());
+    }
+
+    /// The ring at a vertex as those beside it count it.
+    struct Note {
+        bool counts = false, looked_far = false;
+        std::uint32_t size = 0, contradicted = 0; // sides; facets beside
+
+        std::uint32_t packed() const {
+            return 1u | std::uint32_t{counts} << 1 | std::uint32_t{looked_far} << 2 | size << 8
+                   | contradicted << 16;
+        }
+        static Note unpacked(std::uint32_t bits) {
+            return {(bits & 2) != 0, (bits & 4) != 0, bits >> 8 & 0xff, bits >> 16};
+        }
+    };
+    Note note_of(Index v) {
+        return Note::unpacked(ask_.note(v, [&] {
+            const std::vector<Index> sides = fans_.sides_of(search_.ring_at(v));
+            if (sides.size() < 3) return Note().packed();
+            const bool far_before = std::exchange(has_looked_far_, false);
+            Note note{!bounds(sides), false, static_cast<std::uint32_t>(sides.size()),
+                      contradicted_beside(sides)};
+            note.looked_far = std::exchange(has_looked_far_, far_before);
+            return note.packed();
+        }));
+    }
+
+    /// Is what holds for a ring true of those round the vertices beside it, on average? A hole or rod of the
+    /// part is spoken for along most of its length.
+    bool are_contradicted_beside(std::span<const Index> sides) {
+        std::vector<Index> beside;
+        for (const Index f : fans_.facets_beside(sides))
+            for (const Index v : fans_.mesh.facet(f)) beside.push_back(v);
+        sort_unique(beside);
+        double sum = 0, count = 0;
+        for (const Index v : beside) {
+            const Note note = note_of(v);
+            has_looked_far_ |= note.looked_far;
+            if (!note.counts) continue;
+            sum += note.contradicted / static_cast<double>(2 * note.size);
+            ++count;
+        }
+        return sum >= handles::least_contradicted * count;
+    }
+
+    /// Does the ring bound a small part of its own, a knob rather than one of two parts that a bridge joins?
+    /// Facets are gathered on both sides by turns, until they meet behind the ring, one side has no more, or
+    /// both have as many as a part.
+    bool bounds(std::span<const Index> sides) {
+        const PolygonMesh& mesh = fans_.mesh;
+        const FacetLinks& links = fans_.links;
+        side_of_.clear();
+        for (std::vector<Index>& facets : gathered_) facets.clear();
+        bool met = false;
+        const auto visit = [&](Index f, unsigned side) {
+            if (side_of_.add(f, side)) {
+                gathered_[side].push_back(f);
+                if (!has_looked_far_) has_looked_far_ = ask_.is_far(f);
+            } else if (side_of_.at(f) != side) {
+                met = true;
+            }
+        };
+        for (const Index side : sides) visit(links.facet[side], 0), visit(links.facet[links.twin[side]], 1);
+        const auto is_small = [&] {
+            return std::min(gathered_[0].size(), gathered_[1].size()) < handles::fewest_of_part;
+        };
+        std::array<std::size_t, 2> next{0, 0};
+        bool ended = false;
+        for (unsigned side = 0; !met && is_small(); side = 1 - side) {
+            ended = next[side] == gathered_[side].size();
+            if (ended) break;
+            const Index f = gathered_[side][next[side]++];
+            for (Index c = mesh.first[f]; c < mesh.first[f + 1]; ++c) {
+                const Index twin = links.twin[c];
+                if (twin == no_index || std::ranges::find(sides, c) != sides.end()
+                    || std::ranges::find(sides, twin) != sides.end())
+                    continue;
+                visit(links.facet[twin], side);
+            }
+        }
+        return ended;
+    }
+
+    const RingQuestions& ask_;
+    const VertexFans& fans_;
+    RingSearch search_;
+    SmallTable side_of_;                         // of a ring, that a facet lies on
+    std::array<std::vector<Index>, 2> gathered_; // facets on each
+    bool has_looked_far_ = false;                // behind the ring at a vertex, beyond what is near
+    bool looked_far_ = false;                    // the same, for a vertex that is the part's
+};
+
+/// Cuts rings in rounds: all that can be cut without touching each other, then those near by once more.
+class HandleCutter {
+public:
+    HandleCutter(const Octree& octree, const OctreeLevel& level, const NormalSets& sets,
+                 std::span<const Index> voxel, const PartVoxels& part, PolygonMesh& mesh)
+        : level_(level),
           sets_(sets),
           voxel_(voxel),
-          witnesses_(octree, level, voxel, mesh),
-          done_(done) {
-        const double voxel_size = level.voxel_size;
-        has_wall_ = voxels_of_walls(sets, voxel, mesh);
-        assign_large(contradicted_, mesh.facet_count(), 0);
-        for_each_index(mesh.facet_count(), chunks::quick, [&](Index f) {
-            contradicted_[f] = is_contradicted(mesh, f, sets, voxel, voxel_size);
-        });
-    }
+          part_(part),
+          mesh_(mesh),
+          witnesses_(octree, level, voxel, mesh) {}
 
-    std::size_t cut() {
-        const std::vector<Index> roots = doubtful_vertices();
-        if (roots.empty()) return 0;
-        links_ = known_links_ ? std::move(*known_links_) : link_facets(mesh_);
-        known_links_.reset();
-        Vicinity vicinity(mesh_, links_);
-        assign_large(touched_, mesh_.vertex_count(), 0);
-        assign_large(seen_, mesh_.facet_count(), 0);
-        for_each_in_order(roots.size(), [&](std::size_t i) {
-            std::size_t& done = done_.of(voxel_at(roots[i]));
-            if (done > handles::most_work) return;
-            Interruption::poll();
-            work_ = 0;
-            look_at(roots[i], vicinity);
-            done += work_;
-        });
-        for (const Ring& ring : rings_) open(ring);
-        for (const auto& [v, place] : moves_) mesh_.positions[v] = place;
-        if (rings_.empty()) known_links_ = std::move(links_);
-        return rings_.size();
+    HandleCounts cut(std::optional<FacetLinks>& known_links) {
+        HandleCounts counts;
+        std::vector<Index> roots = doubtful_vertices({});
+        for (int round = 0; !roots.empty() && round < enough_rounds; ++round) {
+            FacetLinks links = known_links ? std::move(*known_links) : link_facets(mesh_);
+            known_links.reset();
+            const VertexFans fans(mesh_, links);
+            if (round > 0) roots = doubtful_vertices(near_changed(fans));
+            const std::vector<Ring> rings = apart(rings_to_cut(roots, fans), fans);
+            counts.cut += rings.size();
+            if (rings.empty()) {
+                known_links = std::move(links);
+                break;
+            }
+            open(rings, fans);
+        }
+        counts.looked_far = looked_far_;
+        return counts;
     }
 
 private:
-    struct Ring {
-        std::vector<Index> vertices, sides;
-    };
-
-    /// Facets within four edges of a vertex, and the points that are asked about a ring: about so many.
-    static constexpr std::size_t work_at_vertex = 64;
-
-    Index facet_of(Index side) const { return links_.facet[side]; }
-
-    /// Does the facet face aside from a set of a voxel that a wall or gap passes?
-    bool joins_wall(std::size_t f, Index v) const {
-        if (!has_wall_[v]) return false;
+    /// Does a facet face aside from a set of a voxel that a wall or gap passes?
+    bool joins_wall(std::size_t f, bool has_wall, Index v) const {
+        if (!has_wall) return false;
         const Vec3 area = area_vector(mesh_, mesh_.facet(f));
         const double most = angles::halfway * area.norm();
         return std::ranges::any_of(sets_.of_voxel(v),
@@ -296,21 +284,27 @@ private:
 
     /// Those of facets that join the sides of walls and gaps, or that no set speaks for, and where two edges
     /// of a facet meet that are shorter together than a narrow ring is across: where points are as dense as
-    /// in the fullest voxel at the facet.
-    std::vector<Index> doubtful_vertices() const {
+    /// in the fullest voxel at the facet. `among`: these alone, a flag per vertex; empty: all.
+    std::vector<Index> doubtful_vertices(const std::vector<std::uint8_t>& among) const {
+        const std::vector<std::uint8_t> has_wall = voxels_of_walls(sets_, voxel_, mesh_);
         const auto add = [&](std::size_t begin, std::size_t end, std::vector<Index>& found) {
-            for (std::size_t f = begin; f < end; ++f) {
+            for (auto f = static_cast<Index>(begin); f < end; ++f) {
                 const auto facet = mesh_.facet(f);
                 const std::size_t n = facet.size();
+                const auto is_asked = [&](Index v) { return among.empty() || among[v]; };
+                if (std::ranges::none_of(facet, is_asked)) continue;
                 const auto length = [&](std::size_t i) {
                     return (mesh_.positions[facet[i % n]] - mesh_.positions[facet[(i + 1) % n]]).norm();
                 };
                 double spacing = std::numeric_limits<double>::infinity();
                 for (const Index v : facet) spacing = std::min(spacing, witnesses_.spacing_at(v));
+                const bool contradicted = is_contradicted(mesh_, f, sets_, voxel_, level_.voxel_size);
                 double before = length(n - 1);
                 for (std::size_t i = 0; i < n; ++i) {
                     const double after = length(i);
-                    if (contradicted_[f] || joins_wall(f, voxel_at(facet[i])) || before + after < 2 * spacing)
+                    const Index v = voxel_at(facet[i]);
+                    if (is_asked(facet[i])
+                        && (contradicted || joins_wall(f, has_wall[v], v) || before + after < 2 * spacing))
                         found.push_back(facet[i]);
                     before = after;
                 }
@@ -321,198 +315,120 @@ private:
         return found;
     }
 
-    Index voxel_at(Index root) const { return voxel_[mesh_.origin[root]]; }
-
-    /// Keeps the ring at a vertex if it is to be cut.
-    void look_at(Index root, Vicinity& vicinity) {
-        const std::vector<Index> ring = vicinity.ring_at(root);
-        const double share = share_contradicted(vicinity, ring);
-        if (share < 0) return;
-        const bool is_denied = witnesses_.deny(ring), is_narrow = !is_denied && witnesses_.is_narrow(ring);
-        const bool is_contradicted = share >= handles::least_contradicted;
-        if (!(is_denied || is_narrow || is_contradicted) || bounds())
-            return; // to look behind it takes longest
-        if (is_denied
-            || ((is_narrow || are_contradicted_beside(vicinity, ring)) && !witnesses_.surround(ring)
-                && !witnesses_.are_missing_across(ring, facets_beside(vicinity, ring))))
-            keep(vicinity, ring);
+    Index voxel_at(Index vertex) const { return voxel_[mesh_.origin[vertex]]; }
+    /// What rings of these vertices can pass has changed: a flag per vertex.
+    std::vector<std::uint8_t> near_changed(const VertexFans& fans) const {
+        std::vector<std::uint8_t> is_near = large_vector<std::uint8_t>(mesh_.vertex_count());
+        std::vector<Index> reached = changed_;
+        for (const Index v : reached) is_near[v] = 1;
+        std::size_t begin = 0;
+        for (int edges = 0; edges < handles::reach; ++edges)
+            for (const std::size_t end = reached.size(); begin < end; ++begin)
+                fans.for_each_side_out(reached[begin], [&](Index c) {
+                    const Index v = fans.end(c);
+                    if (!std::exchange(is_near[v], std::uint8_t{1})) reached.push_back(v);
+                });
+        return is_near;
     }
 
-    /// The facets on both sides of a ring, each as often as it has an edge of it.
-    std::vector<Index> facets_beside(const Vicinity& vicinity, const std::vector<Index>& ring) {
-        list_sides(vicinity, ring);
-        std::vector<Index> facets;
-        for (const Index side : sides_)
-            for (const Index c : {side, links_.twin[side]}) facets.push_back(facet_of(c));
-        return facets;
+    /// Those at these vertices, in their order.
+    std::vector<Ring> rings_to_cut(const std::vector<Index>& roots, const VertexFans& fans) {
+        const RingQuestions ask(fans, witnesses_, voxel_, part_);
+        std::atomic<bool> looked_far = false;
+        std::vector<Ring> rings = collected<Ring>(
+            roots.size(), chunks::heavy, [&](std::size_t begin, std::size_t end, std::vector<Ring>& found) {
+                RingJudge judge(ask);
+                for (std::size_t i = begin; i < end; ++i)
+                    if (std::optional<Ring> ring = judge.ring_to_cut(roots[i]))
+                        found.push_back(std::move(*ring));
+                if (judge.looked_far()) looked_far = true;
+            });
+        looked_far_ |= looked_far;
+        return rings;
     }
 
-    /// The ring's sides, on its left; false if one has none on its right, or another ring has come near.
-    bool list_sides(const Vicinity& vicinity, const std::vector<Index>& ring) {
-        sides_.clear();
-        for (std::size_t i = 0; i < ring.size(); ++i) {
-            const Index side = vicinity.side_between(ring[i], ring[(i + 1) % ring.size()]);
-            if (touched_[ring[i]] || side == no_index || links_.twin[side] == no_index) return false;
-            sides_.push_back(side);
+    /// Those of which none has a vertex at a facet beside another one; keeps the vertices of these facets.
+    std::vector<Ring> apart(std::vector<Ring>&& rings, const VertexFans& fans) {
+        changed_.clear();
+        std::vector<std::uint8_t> touched = large_vector<std::uint8_t>(mesh_.vertex_count());
+        std::erase_if(rings, [&](const Ring& ring) {
+            if (std::ranges::any_of(ring.vertices, [&](Index v) { return touched[v] != 0; })) return true;
+            for (const Index f : fans.facets_beside(ring.sides))
+                for (const Index v : mesh_.facet(f))
+                    if (!std::exchange(touched[v], std::uint8_t{1})) changed_.push_back(v);
+            return false;
+        });
+        return std::move(rings);
+    }
+
+    /// Gives the facets on the left of each ring vertices of their own, and closes both sides.
+    void open(const std::vector<Ring>& rings, const VertexFans& fans) {
+        std::vector<std::vector<Index>> ends; // of the mesh, two a ring
+        std::vector<std::pair<Index, Vec3>> moves;
+        for (const Ring& ring : rings) {
+            ends.push_back(ring.vertices);
+            ends.push_back(parted(ring, fans, moves));
         }
-        for (std::size_t i = 0; i < ring.size(); ++i) // a vertex may have other fans of facets, too
-            if (corners_left_of(sides_, i).empty() || corners_right_of(sides_, i).empty()) return false;
-        return true;
-    }
-
-    /// Of the facets beside a ring, the share that no points speak for; below 0 if it cannot be cut.
-    double share_contradicted(const Vicinity& vicinity, const std::vector<Index>& ring) {
-        work_ += work_at_vertex;
-        if (ring.size() < 3 || !list_sides(vicinity, ring)) return -1;
-        std::size_t count = 0;
-        for (const Index side : sides_)
-            for (const Index c : {side, links_.twin[side]}) count += !witnesses_.speak_for(facet_of(c));
-        return static_cast<double>(count) / static_cast<double>(2 * ring.size());
-    }
-
-    /// Is what holds for a ring true of those round the vertices beside it, on average? A hole or rod of the
-    /// part is spoken for along most of its length.
-    bool are_contradicted_beside(Vicinity& vicinity, const std::vector<Index>& ring) {
-        std::vector<Index> beside;
-        for (const Index f : facets_beside(vicinity, ring))
-            for (const Index v : mesh_.facet(f)) beside.push_back(v);
-        sort_unique(beside);
-        double sum = 0, count = 0;
-        for (const Index v : beside) {
-            const std::vector<Index> other = vicinity.ring_at(v);
-            const double share = share_contradicted(vicinity, other);
-            if (share < 0 || bounds()) continue;
-            sum += share;
-            ++count;
-        }
-        return sum >= handles::least_contradicted * count;
-    }
-
-    /// Does the ring bound a small part of its own, a knob rather than one of two parts that a bridge joins?
-    /// Facets are gathered on both sides by turns, until they meet behind the ring, or one side has no more.
-    bool bounds() {
-        std::array<std::vector<Index>, 2> pending;
         std::vector<Index> all;
-        bool met = false;
-        const auto visit = [&](Index f, unsigned side) {
-            if (seen_[f] == 0) {
-                seen_[f] = static_cast<std::uint8_t>(side + 1);
-                pending[side].push_back(f);
-                all.push_back(f);
-            } else if (seen_[f] != side + 1) {
-                met = true;
-            }
-        };
-        for (const Index side : sides_) {
-            visit(facet_of(side), 0);
-            visit(facet_of(links_.twin[side]), 1);
-        }
-        std::array<std::size_t, 2> next{0, 0};
-        bool ended = false;
-        for (unsigned side = 0; !met && all.size() < handles::far; side = 1 - side) {
-            ended = next[side] == pending[side].size();
-            if (ended) break;
-            const Index f = pending[side][next[side]++];
-            for (Index c = mesh_.first[f]; c < mesh_.first[f + 1]; ++c) {
-                const Index twin = links_.twin[c];
-                if (twin == no_index || std::ranges::find(sides_, c) != sides_.end()
-                    || std::ranges::find(sides_, twin) != sides_.end())
-                    continue;
-                visit(facet_of(twin), side);
-            }
-        }
-        for (const Index f : all) seen_[f] = 0;
-        work_ += all.size();
-        const std::size_t smaller = std::min(pending[0].size(), pending[1].size());
-        return ended && smaller < handles::fewest_of_part;
+        for (const std::vector<Index>& end : ends) all.insert(all.end(), end.begin(), end.end());
+        const EdgeSet edges(mesh_, all);
+        for (const std::vector<Index>& end : ends) close(end, edges);
+        for (const auto& [v, place] : moves) mesh_.positions[v] = place;
+        changed_.insert(changed_.end(), all.begin(), all.end());
+        sort_unique(changed_);
     }
 
-    void keep(const Vicinity& vicinity, const std::vector<Index>& ring) {
-        list_sides(vicinity, ring);
-        rings_.push_back({ring, sides_});
-        for (const Index side : sides_)
-            for (const Index c : {side, links_.twin[side]})
-                for (const Index v : mesh_.facet(facet_of(c))) touched_[v] = 1;
-    }
-
-    /// Gives the facets on the left of a ring vertices of their own, and closes both sides.
-    void open(const Ring& cut) {
-        const std::vector<Index>&ring = cut.vertices, &sides = cut.sides;
-        const std::size_t n = ring.size();
+    /// The vertices of the facets on a ring's left, the other way round.
+    std::vector<Index> parted(const Ring& ring, const VertexFans& fans,
+                              std::vector<std::pair<Index, Vec3>>& moves) {
+        const std::size_t n = ring.vertices.size();
         std::vector<Index> left(n);
         std::vector<std::vector<Index>> corners(n); // on the left
         for (std::size_t i = 0; i < n; ++i) {
-            corners[i] = corners_left_of(sides, i);
-            draw_back(ring[i], ring, corners[i]);
-            left[i] = copy_vertex(mesh_, ring[i]);
-            if (!moves_.empty() && moves_.back().first == ring[i]) moves_.back().first = left[i];
-            draw_back(ring[i], ring, corners_right_of(sides, i));
+            const Index v = ring.vertices[i];
+            corners[i] = fans.corners_left_of(ring.sides, i);
+            const auto back_left = drawn_back(v, ring.vertices, corners[i], fans);
+            left[i] = copy_vertex(mesh_, v);
+            if (back_left) moves.emplace_back(left[i], *back_left);
+            const auto back = drawn_back(v, ring.vertices, fans.corners_right_of(ring.sides, i), fans);
+            if (back) moves.emplace_back(v, *back);
         }
         for (std::size_t i = 0; i < n; ++i)
             for (const Index c : corners[i]) mesh_.corners[c] = left[i];
         std::reverse(left.begin(), left.end());
-        close(ring);
-        close(left);
+        return left;
     }
 
-    /// The corners of a ring's vertex on the left of the ring, one after the other.
-    std::vector<Index> corners_left_of(const std::vector<Index>& sides, std::size_t i) const {
-        return corners_between(sides[i], sides[(i == 0 ? sides.size() : i) - 1]);
-    }
-    std::vector<Index> corners_right_of(const std::vector<Index>& sides, std::size_t i) const {
-        return corners_between(links_.twin[sides[(i == 0 ? sides.size() : i) - 1]], links_.twin[sides[i]]);
-    }
-
-    /// The corners at the start of a side, of the facets on its left one after the other, until one has
-    /// `last` before it; none if none has.
-    std::vector<Index> corners_between(Index side, Index last) const {
-        std::vector<Index> corners;
-        for (Index c = side; c != no_index;) {
-            corners.push_back(c);
-            const Index before = previous_side(mesh_, facet_of(c), c);
-            if (before == last) return corners;
-            c = links_.twin[before];
-            if (c == side) break;
-        }
-        return {};
-    }
-
-    /// A vertex of the ring goes half of the way to its neighbours on one side, so that the sides part.
-    void draw_back(Index v, const std::vector<Index>& ring, const std::vector<Index>& corners) {
+    /// Half of the way from a vertex of a ring to its neighbours on one side, so that the sides part.
+    std::optional<Vec3> drawn_back(Index v, const std::vector<Index>& ring, const std::vector<Index>& corners,
+                                   const VertexFans& fans) const {
         Vec3 sum(0, 0, 0);
         double count = 0;
         for (const Index c : corners) {
-            const Index w = mesh_.corners[previous_side(mesh_, facet_of(c), c)];
+            const Index w = mesh_.corners[previous_side(mesh_, fans.facet_of(c), c)];
             if (std::ranges::find(ring, w) != ring.end()) continue;
             sum += mesh_.positions[w];
             ++count;
         }
-        if (count > 0) moves_.emplace_back(v, 0.5 * (mesh_.positions[v] + sum / count));
+        if (count == 0) return std::nullopt;
+        return 0.5 * (mesh_.positions[v] + sum / count);
     }
 
-    void close(const std::vector<Index>& ring) {
-        const EdgeSet edges(mesh_, ring);
-        const std::vector<Vec3> none(ring.size(), Vec3(0, 0, 0));
-        const Pieces pieces = split_polygon(mesh_, ring, none, edges);
+    void close(const std::vector<Index>& end, const EdgeSet& edges) {
+        const std::vector<Vec3> none(end.size(), Vec3(0, 0, 0));
+        const Pieces pieces = split_polygon(mesh_, end, none, edges);
         for (const std::vector<Index>& piece : pieces) mesh_.add_facet(piece);
-        if (pieces.empty()) mesh_.add_facet(ring);
+        if (pieces.empty()) mesh_.add_facet(end);
     }
 
-    PolygonMesh& mesh_;
-    std::optional<FacetLinks>& known_links_;
+    const OctreeLevel& level_;
     const NormalSets& sets_;
     std::span<const Index> voxel_;
-    Witnesses witnesses_;
-    WorkOfBlocks& done_;
-    std::size_t work_ = 0; // facets looked at for a vertex
-    FacetLinks links_;
-    std::vector<std::uint8_t> has_wall_;     // per voxel: passed by a wall or gap
-    std::vector<std::uint8_t> contradicted_; // per facet
-    std::vector<std::uint8_t> touched_;      // per vertex, near a ring that is to be cut
-    std::vector<std::uint8_t> seen_;         // per facet, the side of the ring it is on, from 1
-    std::vector<Index> sides_;               // of a ring, on its left
-    std::vector<Ring> rings_;
-    std::vector<std::pair<Index, Vec3>> moves_;
+    const PartVoxels& part_;
+    PolygonMesh& mesh_;
+    const Witnesses witnesses_;
+    std::vector<Index> changed_; // vertices, by the last round
+    bool looked_far_ = false;
 };
 
 } // namespace
@@ -520,15 +436,7 @@ private:
 HandleCounts cut_handles(const Octree& octree, const OctreeLevel& level, const NormalSets& sets,
                          std::span<const Index> voxel, PolygonMesh& mesh, std::optional<FacetLinks>& links,
                          const PartVoxels& part) {
-    HandleCounts counts;
-    WorkOfBlocks done(level);
-    for (int round = 0; round < enough_rounds; ++round) {
-        const std::size_t rings = Round(octree, level, sets, voxel, done, mesh, links).cut();
-        counts.cut += rings;
-        if (rings == 0) break;
-    }
-    counts.is_crowded = part.is_part() && done.is_crowded(part);
-    return counts;
+    return HandleCutter(octree, level, sets, voxel, part, mesh).cut(links);
 }
 
 } // namespace hsdm

@@ -12,9 +12,7 @@ namespace hsdm {
 
 struct HandleCounts {
     std::size_t cut = 0; ///< rings
-    /// Of a part: a block of voxels that it owns took more than half of what it may, so that what lies around
-    /// must be known farther off for it to take what it takes in the whole.
-    bool is_crowded = false;
+    bool looked_far = false; ///< of a part: behind a ring that it owns, beyond what is near
 };
 
 /// Cuts the mesh along short rings of edges that do not bound a small part of their own, and closes both
@@ -22,10 +20,9 @@ struct HandleCounts {
 /// facets beside it, nor of those beside the rings next to it on average, or its vertices are nearer to its
 /// axis than points to each other (Witnesses). A bridge through the air is taken away like that, and a tunnel
 /// filled. Each cut raises the Euler characteristic by two, so it comes to an end. A 2-manifold remains one;
-/// vertices are copied with their origins, `voxel` is per origin. O(facets):
-/// rings are looked for near facets that no set of their vertices' voxels agrees with, that face aside from
-/// one where a wall or gap passes, and where two short edges of a facet meet, and no more in a block of
-/// voxels once that has taken so much work there. Serial but for the first look at all facets. `links` are
+/// vertices are copied with their origins, `voxel` is per origin. O(facets), parallel: rings are looked for
+/// near facets that no set of their vertices' voxels agrees with, that face aside from one where a wall or
+/// gap passes, and where two short edges of a facet meet; once some have been cut, near these. `links` are
 /// the mesh's if they are known; they are found if needed, and none are left once the mesh has changed.
 HandleCounts cut_handles(const Octree& octree, const OctreeLevel& level, const NormalSets& sets,
                          std::span<const Index> voxel, PolygonMesh& mesh, std::optional<FacetLinks>& links,

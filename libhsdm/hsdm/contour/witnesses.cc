@@ -77,29 +77,29 @@ private:
     std::vector<std::array<double, 2>> outline_; ///< of the ring, about its centre
 };
 
-bool Witnesses::speak_for(Index f) {
+bool Witnesses::speak_for(Index f) const {
+    constexpr std::size_t sides_of_bar = 4; // the nearest points lie on all of them
     const auto facet = mesh_.facet(f);
     const Vec3 normal = unit(area_vector(mesh_, facet));
     const Vec3 centre = centroid(mesh_, facet);
-    near_.clear();
+    std::vector<std::pair<double, Index>> near; // squared distances and points
+    const auto gather = [&](Index v) {
+        for (Index p = level_.first_point[v]; p < level_.first_point[v + 1]; ++p)
+            if (!octree_.is_completed(p)) near.emplace_back((octree_.positions[p] - centre).sqrnorm(), p);
+    };
     const Index own = voxel_of(facet[0]);
-    gather(own, centre);
-    for_neighbors(level_, own, [&](Index v) { gather(v, centre); });
-    const std::size_t count = std::min(near_.size(), nearest_asked);
-    std::partial_sort(near_.begin(), near_.begin() + static_cast<std::ptrdiff_t>(count), near_.end());
+    gather(own);
+    for_neighbors(level_, own, gather);
+    const std::size_t count = std::min(near.size(), sides_of_bar * nearest_asked);
+    std::partial_sort(near.begin(), near.begin() + static_cast<std::ptrdiff_t>(count), near.end());
     const double gap = handles::speaking_gap * level_.voxel_size;
     std::size_t agree = 0;
     for (std::size_t k = 0; k < count; ++k) {
-        const Index p = near_[k].second;
+        const Index p = near[k].second;
         agree += (octree_.normals[p] | normal) > angles::facing
                  && std::abs(octree_.normals[p] | (octree_.positions[p] - centre)) < gap;
     }
     return agree >= two_agree;
-}
-
-void Witnesses::gather(Index v, const Vec3& centre) {
-    for (Index p = level_.first_point[v]; p < level_.first_point[v + 1]; ++p)
-        if (!octree_.is_completed(p)) near_.emplace_back((octree_.positions[p] - centre).sqrnorm(), p);
 }
 
 std::vector<Index> Witnesses::voxels_at(std::span<const Index> ring) const {

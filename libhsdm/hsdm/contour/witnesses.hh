@@ -14,8 +14,9 @@ public:
               const PolygonMesh& mesh)
         : octree_(octree), level_(level), voxel_(voxel), mesh_(mesh) {}
 
-    /// Do at least two of the eight points nearest to a facet face its way, and lie in its plane?
-    bool speak_for(Index facet);
+    /// Do at least two of the points nearest to a facet, eight for each side of a bar, face its way and lie
+    /// in its plane?
+    bool speak_for(Index facet) const;
 
     /// Do points say that a ring of vertices is none of the part's? Some face along its axis, within it, one
     /// way and the other, and the stretch of the axis that they stand in holds no point of a bore or rod,
@@ -45,7 +46,6 @@ private:
 
     double spacing(std::size_t points, std::size_t voxels) const;
     Index voxel_of(Index vertex) const { return voxel_[mesh_.origin[vertex]]; }
-    void gather(Index voxel, const Vec3& centre);
     /// The voxels of the ring's vertices and those round them, each once.
     std::vector<Index> voxels_at(std::span<const Index> ring) const;
     /// Calls f for each measured point of the voxels.
@@ -75,7 +75,6 @@ private:
     const OctreeLevel& level_;
     std::span<const Index> voxel_;
     const PolygonMesh& mesh_;
-    std::vector<std::pair<double, Index>> near_;
 };
 
 } // namespace hsdm

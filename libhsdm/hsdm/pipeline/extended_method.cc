@@ -487,7 +487,7 @@ PartFacets facets_of_part(const MethodInput& in, const PartOfLevel& part) {
     for (const NormalSet& set : sets.sets) result.counts.sets += is_own(set.voxel);
     result.counts.misfit_placed = facets.misfit_placed, result.counts.misfit_moved = facets.misfit_moved;
     result.counts.tangles = facets.tangles;
-    result.counts.is_crowded = facets.is_crowded;
+    result.counts.looked_far = facets.looked_far;
     result.components = std::move(facets.components);
     result.mesh = std::move(facets.mesh);
     result.voxel = std::move(facets.voxel);

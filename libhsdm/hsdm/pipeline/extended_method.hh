@@ -35,7 +35,7 @@ struct FacetCounts {
     std::size_t middle = 0, tilted = 0;         ///< as in SheetFeatures, of edges of own facets
     double misfit_placed = 0, misfit_moved = 0; ///< as in DualContour, of own voxels
     TangleCounts tangles;                       ///< as in DualContour
-    bool is_crowded = false;                    ///< the same, of one part
+    bool looked_far = false;                    ///< the same, of one part
 
     void operator+=(const FacetCounts& other);
 };

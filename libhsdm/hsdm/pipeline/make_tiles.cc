@@ -42,7 +42,7 @@ public:
             }
             due = disagreeing_tiles(
                 pieces, ranges_, [&](std::size_t k) { return owner(k); }, ranks_);
-            add_crowded(pieces, ghost, due);
+            add_far_looking(pieces, due);
             for (std::size_t k = 0; k < ranges_.size(); ++k)
                 if (due[k]) ghost[k] *= 2, ++how_.widened;
             if (std::ranges::count(due, 1) == 0) due = due_by_sums(pieces);
@@ -55,15 +55,13 @@ private:
     int owner(std::size_t tile) const { return cloud_.owner_of(ranges_[tile]); }
     bool is_own(std::size_t tile) const { return owner(tile) == ranks_.rank(); }
 
-    /// Tiles that may have been cut short in the search for handles, as long as they do not know what lies as
-    /// far around as the longest of these searches look.
-    void add_crowded(const std::vector<Piece>& pieces, const std::vector<int>& ghost,
-                     std::vector<std::uint8_t>& due) const {
-        constexpr int enough = 128;
-        std::vector<std::uint8_t> crowded(pieces.size(), 0);
+    /// Tiles that looked farther behind a ring than they know what is there. That ends: these searches reach
+    /// some 70 voxels (handles::fewest_of_part facets, three or more round a ring).
+    void add_far_looking(const std::vector<Piece>& pieces, std::vector<std::uint8_t>& due) const {
+        std::vector<std::uint8_t> far_looking(pieces.size(), 0);
         for (std::size_t k = 0; k < pieces.size(); ++k)
-            crowded[k] = due[k] || (is_own(k) && pieces[k].counts.is_crowded && ghost[k] < enough);
-        due = ranks_.any_of_each(crowded);
+            far_looking[k] = due[k] || (is_own(k) && pieces[k].counts.looked_far);
+        due = ranks_.any_of_each(far_looking);
     }
 
     /// Those of this rank. All ranks know of all how wide they are.
