@@ -11,7 +11,7 @@
 namespace hsdm {
 
 struct HandleCounts {
-    std::size_t cut = 0; ///< rings
+    std::size_t cut = 0;     ///< rings
     bool looked_far = false; ///< of a part: behind a ring that it owns, beyond what is near
 };
 
