@@ -127,12 +127,14 @@ public:
         const Witnesses& witnesses = ask_.witnesses;
         const bool is_denied = witnesses.deny(ring), is_narrow = !is_denied && witnesses.is_narrow(ring);
         const bool is_contradicted = share_contradicted(sides) >= handles::least_contradicted;
-        if (!(is_denied || is_narrow || is_contradicted)) return std::nullopt;
+        const bool is_triangle = sides.size() == 3; // four facets go round a bar or bore
+        if (!(is_denied || is_narrow || is_triangle || is_contradicted)) return std::nullopt;
         has_looked_far_ = false;
-        const bool is_cut = !bounds(sides) // to look behind it takes longest
-                            && (is_denied
-                                || ((is_narrow || are_contradicted_beside(sides)) && !witnesses.surround(ring)
-                                    && !witnesses.are_missing_across(ring, fans_.facets_beside(sides))));
+        const bool is_cut =
+            !bounds(sides) // to look behind it takes longest
+            && (is_denied
+                || ((is_narrow || is_triangle || are_contradicted_beside(sides)) && !witnesses.surround(ring)
+                    && !witnesses.are_missing_across(ring, fans_.facets_beside(sides))));
         looked_far_ |= is_own && has_looked_far_;
         if (!is_cut) return std::nullopt;
         return Ring{root, std::move(ring), std::move(sides)};
