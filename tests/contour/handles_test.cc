@@ -303,7 +303,7 @@ TEST_CASE("a part tells whether it looked farther behind its rings than it knows
     CHECK_FALSE(cut(4 * voxel_size, 0));               // no ring is its own
 }
 
-TEST_CASE("the same rings are cut by any number of threads, round by round", "[contour][determinism]") {
+TEST_CASE("the same rings are cut by any number of threads", "[contour][determinism]") {
     // Bars of two spacings, in a lattice: hundreds of rings are doubtful, and some of those beside each
     // other.
     Solid bars = box({0.06, 0.06, 1.2});

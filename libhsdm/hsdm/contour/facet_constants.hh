@@ -2,6 +2,7 @@
 // Tuning values of the stages that work on finished facets. What half and double of each do:
 // docs/constants.md.
 
+#include "hsdm/core/constants.hh"
 #include "hsdm/core/tuned.hh"
 
 #include <cstddef>
@@ -29,6 +30,11 @@ inline constexpr double agreeing_gap = 0.5;
 /// share: of the facets beside a ring, that no points speak for.
 /// Why: a web has four sides, above, below and at its ends, and below at least there are no points.
 inline constexpr double least_contradicted = 0.25;
+
+/// points: nearest to a facet, that are asked whether they speak for it.
+/// Why: nearest_asked for each of the four sides of a bar; with those of two sides bars of two spacings are
+/// cut.
+inline constexpr std::size_t witnesses = 4 * nearest_asked;
 
 /// points: that should lie on a stretch of a bore or rod and do not, so that it is none.
 /// Why: chance leaves so much free once in 400 times, where two sheets share the voxels once in 20; next to

@@ -5,6 +5,7 @@
 #include "hsdm/contour/witnesses.hh"
 #include "hsdm/core/chunks.hh"
 #include "hsdm/core/constants.hh"
+#include "hsdm/core/interruption.hh"
 #include "hsdm/core/large_vector.hh"
 #include "hsdm/mesh/area_vector.hh"
 #include "hsdm/mesh/copy_vertex.hh"
@@ -60,7 +61,6 @@ std::vector<std::uint8_t> voxels_of_walls(const NormalSets& sets, std::span<cons
 
 /// A ring that is to be cut.
 struct Ring {
-    Index root; ///< the vertex that it was found at
     std::vector<Index> vertices, sides;
 };
 
@@ -126,18 +126,19 @@ public:
         if (sides.size() < 3) return std::nullopt;
         const Witnesses& witnesses = ask_.witnesses;
         const bool is_denied = witnesses.deny(ring), is_narrow = !is_denied && witnesses.is_narrow(ring);
-        const bool is_contradicted = share_contradicted(sides) >= handles::least_contradicted;
-        const bool is_triangle = sides.size() == 3; // four facets go round a bar or bore
+        const double share = share_contradicted(sides);
+        const bool is_contradicted = share >= handles::least_contradicted;
+        const bool is_triangle = sides.size() == 3 && share > 0; // four facets go round a bar or bore
         if (!(is_denied || is_narrow || is_triangle || is_contradicted)) return std::nullopt;
-        has_looked_far_ = false;
+        if (!is_denied
+            && (witnesses.surround(ring) || witnesses.are_missing_across(ring, fans_.facets_beside(sides))))
+            return std::nullopt;
+        has_looked_far_ = false; // behind it last: that takes longest, and reaches farthest
         const bool is_cut =
-            !bounds(sides) // to look behind it takes longest
-            && (is_denied
-                || ((is_narrow || is_triangle || are_contradicted_beside(sides)) && !witnesses.surround(ring)
-                    && !witnesses.are_missing_across(ring, fans_.facets_beside(sides))));
+            (is_denied || is_narrow || is_triangle || are_contradicted_beside(sides)) && !bounds(sides);
         looked_far_ |= is_own && has_looked_far_;
         if (!is_cut) return std::nullopt;
-        return Ring{root, std::move(ring), std::move(sides)};
+        return Ring{std::move(ring), std::move(sides)};
     }
     bool looked_far() const { return looked_far_; }
 
@@ -318,7 +319,8 @@ private:
     }
 
     Index voxel_at(Index vertex) const { return voxel_[mesh_.origin[vertex]]; }
-    /// What rings of these vertices can pass has changed: a flag per vertex.
+    /// Rings at these vertices may pass what has changed: a flag per vertex. What is on average beside a ring
+    /// is not asked again.
     std::vector<std::uint8_t> near_changed(const VertexFans& fans) const {
         std::vector<std::uint8_t> is_near = large_vector<std::uint8_t>(mesh_.vertex_count());
         std::vector<Index> reached = changed_;
@@ -340,9 +342,11 @@ private:
         std::vector<Ring> rings = collected<Ring>(
             roots.size(), chunks::heavy, [&](std::size_t begin, std::size_t end, std::vector<Ring>& found) {
                 RingJudge judge(ask);
-                for (std::size_t i = begin; i < end; ++i)
+                for (std::size_t i = begin; i < end; ++i) {
+                    Interruption::poll();
                     if (std::optional<Ring> ring = judge.ring_to_cut(roots[i]))
                         found.push_back(std::move(*ring));
+                }
                 if (judge.looked_far()) looked_far = true;
             });
         looked_far_ |= looked_far;

@@ -78,7 +78,6 @@ private:
 };
 
 bool Witnesses::speak_for(Index f) const {
-    constexpr std::size_t sides_of_bar = 4; // the nearest points lie on all of them
     const auto facet = mesh_.facet(f);
     const Vec3 normal = unit(area_vector(mesh_, facet));
     const Vec3 centre = centroid(mesh_, facet);
@@ -90,7 +89,7 @@ bool Witnesses::speak_for(Index f) const {
     const Index own = voxel_of(facet[0]);
     gather(own);
     for_neighbors(level_, own, gather);
-    const std::size_t count = std::min(near.size(), sides_of_bar * nearest_asked);
+    const std::size_t count = std::min(near.size(), handles::witnesses);
     std::partial_sort(near.begin(), near.begin() + static_cast<std::ptrdiff_t>(count), near.end());
     const double gap = handles::speaking_gap * level_.voxel_size;
     std::size_t agree = 0;

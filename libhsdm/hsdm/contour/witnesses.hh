@@ -9,7 +9,7 @@ namespace hsdm {
 
 class Witnesses {
 public:
-    /// All must outlive it; `voxel` is per origin of the mesh's vertices. The mesh's facets may not change.
+    /// All must outlive it; `voxel` is per origin of the mesh's vertices. Asked of the mesh as it is then.
     Witnesses(const Octree& octree, const OctreeLevel& level, std::span<const Index> voxel,
               const PolygonMesh& mesh)
         : octree_(octree), level_(level), voxel_(voxel), mesh_(mesh) {}

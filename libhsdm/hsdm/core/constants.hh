@@ -63,8 +63,8 @@ inline constexpr unsigned points_of_plane = 3;
 /// Why: a single one may be a stray, or wrong.
 inline constexpr unsigned two_agree = 2;
 
-/// points: nearest to a facet, that are asked whether they face its way; shortest ways between two sets, that
-/// are asked whether something parts them.
+/// points: nearest to a facet on one side of a part, that are asked whether they face its way; shortest ways
+/// between two sets, that are asked whether something parts them.
 /// Why: eight points lie within one and a half spacings; one of them may stand at a crease. So many ways end
 /// at more than two points of either set.
 inline constexpr std::size_t nearest_asked = 8;

@@ -459,10 +459,14 @@ PartFacets facets_of_part(const MethodInput& in, const PartOfLevel& part) {
     options.tangles = part.tangles;
     options.largest = part.largest;
     std::vector<std::uint8_t> own_voxels = large_vector<std::uint8_t>(in.level.size());
-    for_each_index(own_voxels.size(), chunks::light, [&](Index v) { own_voxels[v] = is_own(v); });
+    std::vector<std::uint8_t> near_voxels = large_vector<std::uint8_t>(in.level.size());
+    for_each_index(own_voxels.size(), chunks::quick, [&](Index v) {
+        own_voxels[v] = is_own(v);
+        near_voxels[v] = part.is_near(in.level.codes[v]);
+    });
     options.relax.part_of_whole = own_voxels;
     options.part = {[&](Index voxel) { return own_voxels[voxel] != 0; },
-                    [&](Index voxel) { return part.is_near(in.level.codes[voxel]); }};
+                    [&](Index voxel) { return near_voxels[voxel] != 0; }};
     options.relax.go_back = part.go_back;
     DualContour facets = dual_contour(in.octree, in.level, sets, options);
     if (part.turned) {

@@ -55,8 +55,8 @@ private:
     int owner(std::size_t tile) const { return cloud_.owner_of(ranges_[tile]); }
     bool is_own(std::size_t tile) const { return owner(tile) == ranks_.rank(); }
 
-    /// Tiles that looked farther behind a ring than they know what is there. That ends: these searches reach
-    /// some 70 voxels (handles::fewest_of_part facets, three or more round a ring).
+    /// Tiles that looked farther behind a ring than they know what is there: up to some 70 voxels along a bar
+    /// (handles::fewest_of_part facets, three or more round it).
     void add_far_looking(const std::vector<Piece>& pieces, std::vector<std::uint8_t>& due) const {
         std::vector<std::uint8_t> far_looking(pieces.size(), 0);
         for (std::size_t k = 0; k < pieces.size(); ++k)
@@ -69,7 +69,8 @@ private:
                   std::vector<Piece>& pieces) {
         std::vector<ScratchCloud::Surroundings> wanted;
         for (std::size_t k = 0; k < ranges_.size(); ++k) {
-            if (due[k] && ghost[k] > most_ghost_voxels) refuse_in_tiles("neighbouring parts do not agree");
+            if (due[k] && ghost[k] > most_ghost_voxels)
+                refuse_in_tiles("neighbouring parts do not agree, or depend on more than lies around them");
             if (due[k] && is_own(k)) wanted.push_back({ranges_[k], ghost[k]});
         }
         cloud_.fetch(wanted);
