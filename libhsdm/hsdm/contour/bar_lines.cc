@@ -10,8 +10,10 @@
 #include <Eigen/Eigenvalues>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <optional>
 #include <tuple>
 #include <utility>
@@ -330,9 +332,79 @@ std::size_t move_to_bar_lines(GridPoints& grid, const NormalSets& sets, const Re
     return move_to(collected<Claim>(grid.size(), chunks::usual, claim), grid);
 }
 
+namespace {
+
+/// Points of some voxels, asked about a place on a sheet.
+class PointsAround {
+public:
+    PointsAround(const Octree& octree, const OctreeLevel& level, std::span<const Index> voxels)
+        : octree_(octree), level_(level), voxels_(voxels) {
+        for (const Index v : voxels) count_ += level.first_point[v + 1] - level.first_point[v];
+    }
+
+    bool are_none() const { return count_ == 0; }
+
+    /// Has the sheet a point there?
+    bool have(const Vec3& at, const Vec3& normal) const {
+        const double h = level_.voxel_size;
+        const double reach = handles::beside_place * handles::beside_place * h * h
+                             * static_cast<double>(voxels_.size()) / static_cast<double>(count_); // squared
+        return any_of([&](Index p) {
+            return (octree_.normals[p] | normal) > angles::facing
+                   && (octree_.positions[p] - at).sqrnorm() < reach;
+        });
+    }
+
+    /// Does a bar that stands on the sheet pass there, or a bore that enters it? On the one's side the
+    /// nearest points of any direction face away from the normal through the place, all round it, on the
+    /// other's they face it.
+    bool is_passed(const Vec3& at, const Vec3& normal) const {
+        const Frame across(normal);
+        const double h = level_.voxel_size;
+        struct Side {
+            double distance, angle;
+        };
+        std::array<std::array<std::vector<Side>, 2>, 2> sides; // in front of the sheet; facing away
+        any_of([&](Index p) {
+            const Vec3 off = octree_.positions[p] - at, &facing = octree_.normals[p];
+            const double above = off | normal;
+            const Vec3 out = off - above * normal;
+            const double distance = out.norm(), away = facing | out;
+            if (std::max(std::abs(above), distance) < surrounding::reach_along * h
+                && std::abs(away) > angles::halfway * distance)
+                sides[above > 0][away > 0].push_back({distance, across.angle_of(out)});
+            return false;
+        });
+        const auto stand_round = [](std::vector<Side>& own, const std::vector<Side>& others) {
+            double nearest = std::numeric_limits<double>::infinity();
+            for (const Side& other : others) nearest = std::min(nearest, other.distance);
+            std::vector<double> angles;
+            for (const Side& side : own)
+                if (side.distance < nearest) angles.push_back(side.angle);
+            return angles.size() >= 2 * points_of_plane && wide_gaps(angles) == 0;
+        };
+        return stand_round(sides[1][1], sides[1][0]) || stand_round(sides[0][0], sides[0][1]);
+    }
+
+private:
+    template <class Test>
+    bool any_of(Test&& test) const {
+        for (const Index v : voxels_)
+            for (Index p = level_.first_point[v]; p < level_.first_point[v + 1]; ++p)
+                if (test(p)) return true;
+        return false;
+    }
+
+    const Octree& octree_;
+    const OctreeLevel& level_;
+    std::span<const Index> voxels_;
+    std::size_t count_ = 0;
+};
+
+} // namespace
+
 void ask_points_at_bars(const Octree& octree, const OctreeLevel& level, const GridPoints& grid,
                         Crossings& crossings) {
-    const double h = level.voxel_size;
     for_each_index(crossings.moved.size(), chunks::slow, [&](Index i) {
         const Index edge = crossings.moved[i].edge;
         if (crossings.on_edge(edge).empty()) return;
@@ -341,21 +413,13 @@ void ask_points_at_bars(const Octree& octree, const OctreeLevel& level, const Gr
             std::ranges::copy_if(grid.voxels[end], std::back_inserter(voxels),
                                  [](Index v) { return v != no_index; });
         sort_unique(voxels);
-        std::size_t points = 0;
-        for (const Index v : voxels) points += level.first_point[v + 1] - level.first_point[v];
-        if (points == 0) return;
-        const double spacings = handles::beside_place * handles::beside_place; // squared, as the reach
-        const double reach =
-            spacings * h * h * static_cast<double>(voxels.size()) / static_cast<double>(points);
+        const PointsAround points(octree, level, voxels);
+        if (points.are_none()) return;
         for (Index x = crossings.first[edge]; x < crossings.first[edge + 1]; ++x) {
             Crossing& crossing = crossings.crossings[x];
-            const Vec3 at = crossing_position(grid, crossing, h);
-            bool has_point = false;
-            for (const Index v : voxels)
-                for (Index p = level.first_point[v]; p < level.first_point[v + 1] && !has_point; ++p)
-                    has_point = (octree.normals[p] | crossing.normal) > angles::facing
-                                && (octree.positions[p] - at).sqrnorm() < reach;
-            if (!has_point) crossing.standing = crossing.supported = false;
+            const Vec3 at = crossing_position(grid, crossing, level.voxel_size);
+            if (!points.have(at, crossing.normal) || points.is_passed(at, crossing.normal))
+                crossing.standing = crossing.supported = false;
         }
     });
 }

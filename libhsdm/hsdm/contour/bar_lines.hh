@@ -17,9 +17,10 @@ namespace hsdm {
 std::size_t move_to_bar_lines(GridPoints& grid, const NormalSets& sets, const RelationTest& related,
                               double voxel_size);
 
-/// Of the crossings on edges with a grid point off its place, those with no point of their sheet near by do
-/// not stand, and the data do not carry them: where bars end on something, its sheets have holes that their
-/// planes do not know of. O(such crossings), parallel.
+/// Of the crossings on edges with a grid point off its place, those with no point of their sheet near by, or
+/// that points of a bar or bore stand round, do not stand, and the data do not carry them: where bars end on
+/// something, its sheets have holes that their planes do not know of. O(such crossings), parallel; turned
+/// normals give the same.
 void ask_points_at_bars(const Octree& octree, const OctreeLevel& level, const GridPoints& grid,
                         Crossings& crossings);
 
