@@ -61,16 +61,18 @@ Solid frame(double width) {
 }
 
 /// Bars between three by three by three places that are 3.7 voxels apart; 54 of them, so genus 54 - 27 + 1.
-/// Two and more lie in planes as one sheet.
+/// Their sides lie in planes that are those of several but for a hundredth of a voxel.
 Solid lattice(double width) {
     const double pitch = 3.7, length = 2 * pitch + width;
-    Solid bars = box({width, width, length});
-    for (const double u : {-pitch, 0.0, pitch})
-        for (const double w : {-pitch, 0.0, pitch})
-            bars = bars | moved(box({width, width, length}), {u, w, 0})
-                   | moved(box({width, length, width}), {u, 0, w})
-                   | moved(box({length, width, width}), {0, u, w});
-    return bars;
+    Solid block = box({length, length, length});
+    for (const double u : {-0.5 * pitch, 0.5 * pitch})
+        for (const double w : {-0.5 * pitch, 0.5 * pitch}) {
+            const double inner = pitch - width;
+            block = block - moved(box({length + 1, inner, inner}), {0, u, w})
+                    - moved(box({inner + 0.02, length + 1, inner + 0.02}), {u, 0, w})
+                    - moved(box({inner + 0.04, inner + 0.04, length + 1}), {u, w, 0});
+        }
+    return block;
 }
 double area_of_lattice(double width) {
     return 54 * 4 * width * (3.7 - width) + 54 * width * width; // as many faces of places are free
@@ -205,7 +207,49 @@ TEST_CASE("bars and bores thinner than a voxel hold together", "[contour]") {
     CHECK(frames.right >= frames.all - 2);
 }
 
-TEST_CASE("bars of a lattice hold together where six of them meet", "[contour][slow]") {
+TEST_CASE("a crossing counts unless a bar or bore passes it, both ways round", "[contour]") {
+    const auto upright = [](double width, double length, double middle) {
+        return moved(box({width, width, length}), {8, 8, middle});
+    };
+    const Solid block = moved(box({6, 6, 4}), {8, 8, 6.5});     // its upper face at 8.5
+    const Solid along = moved(box({8, 0.8, 0.8}), {8, 8, 7.7}); // 0.4 below it
+    struct Case {
+        const char* name;
+        Solid solid;
+        bool stands; ///< the crossing at (8, 8, 8.5), of what faces up there
+    };
+    for (const Case& part : {
+             Case{"pin on a face", block | upright(0.6, 4, 9.5), false},
+             Case{"bore into a face", block - upright(0.6, 2, 8.5), false},
+             Case{"face", block, true},
+             Case{"pin over a face", block | upright(0.8, 3, 10.3), true},
+             Case{"skin over a bore that is parallel to it", block - along, true},
+             Case{"bottom of a cup, from outside", block - upright(0.8, 3, 6.7), true},
+         })
+        for (const bool turned_normals : {false, true}) {
+            INFO(part.name << (turned_normals ? ", turned" : ""));
+            PointCloud cloud = sample(part.solid, {.points = 6000, .seed = 3});
+            cloud.positions.push_back(Vec3(0, 0, 0)); // keeps the octree's origin there
+            cloud.normals.push_back(Vec3(0, 0, 0));
+            if (turned_normals)
+                for (Vec3& n : cloud.normals) n = -n;
+            const Stages stages(cloud, 4, 16);
+            const GridPoints grid = build_grid_points(stages.level);
+            const Index lower = grid.find(GridPoints::code({8, 8, 8}));
+            REQUIRE(lower != no_index);
+            const Index edge = 3 * lower + 2;
+            Crossings crossings;
+            crossings.first.assign(3 * grid.size() + 1, 0);
+            std::fill(crossings.first.begin() + edge + 1, crossings.first.end(), Index{1});
+            crossings.crossings.push_back({0.5, {0, 0, turned_normals ? -1.0 : 1.0}, edge, 0, true, true});
+            crossings.moved.push_back({edge, {Vec3(0, 0, 0), Vec3(0, 0, 0)}});
+            ask_points_at_bars(stages.octree, stages.level, grid, crossings);
+            CHECK(crossings.crossings[0].standing == part.stands);
+            CHECK(crossings.crossings[0].supported == part.stands);
+        }
+}
+
+TEST_CASE("bars of a lattice hold together where several meet", "[contour][slow]") {
     for (const double width : {1.0, 1.2}) {
         const Counts lattices = count_right(lattice(width), area_of_lattice(width), 2 - 2 * 28);
         INFO("lattices of " << width << ": " << lattices.right << " right");

@@ -334,7 +334,7 @@ std::size_t move_to_bar_lines(GridPoints& grid, const NormalSets& sets, const Re
 
 namespace {
 
-/// Points of some voxels, asked about a place on a sheet.
+/// Measured and completed points of some voxels, asked about a place on a sheet.
 class PointsAround {
 public:
     PointsAround(const Octree& octree, const OctreeLevel& level, std::span<const Index> voxels)
@@ -349,50 +349,56 @@ public:
         const double h = level_.voxel_size;
         const double reach = handles::beside_place * handles::beside_place * h * h
                              * static_cast<double>(voxels_.size()) / static_cast<double>(count_); // squared
-        return any_of([&](Index p) {
-            return (octree_.normals[p] | normal) > angles::facing
-                   && (octree_.positions[p] - at).sqrnorm() < reach;
-        });
+        for (const Index v : voxels_)
+            for (Index p = level_.first_point[v]; p < level_.first_point[v + 1]; ++p)
+                if ((octree_.normals[p] | normal) > angles::facing
+                    && (octree_.positions[p] - at).sqrnorm() < reach)
+                    return true;
+        return false;
     }
 
-    /// Does a bar that stands on the sheet pass there, or a bore that enters it? On the one's side the
-    /// nearest points of any direction face away from the normal through the place, all round it, on the
-    /// other's they face it.
+    /// Does a bar that stands on the sheet pass there, or a bore that enters it? Measured points stand round
+    /// the normal through the place, in front of the sheet and facing away from it, or behind and facing it;
+    /// nearer than any that face the other way, and than the sheet's own.
     bool is_passed(const Vec3& at, const Vec3& normal) const {
         const Frame across(normal);
-        const double h = level_.voxel_size;
-        struct Side {
-            double distance, angle;
-        };
-        std::array<std::array<std::vector<Side>, 2>, 2> sides; // in front of the sheet; facing away
-        any_of([&](Index p) {
-            const Vec3 off = octree_.positions[p] - at, &facing = octree_.normals[p];
-            const double above = off | normal;
-            const Vec3 out = off - above * normal;
-            const double distance = out.norm(), away = facing | out;
-            if (std::max(std::abs(above), distance) < surrounding::reach_along * h
-                && std::abs(away) > angles::halfway * distance)
-                sides[above > 0][away > 0].push_back({distance, across.angle_of(out)});
-            return false;
-        });
-        const auto stand_round = [](std::vector<Side>& own, const std::vector<Side>& others) {
-            double nearest = std::numeric_limits<double>::infinity();
-            for (const Side& other : others) nearest = std::min(nearest, other.distance);
-            std::vector<double> angles;
-            for (const Side& side : own)
-                if (side.distance < nearest) angles.push_back(side.angle);
-            return angles.size() >= 2 * points_of_plane && wide_gaps(angles) == 0;
-        };
-        return stand_round(sides[1][1], sides[1][0]) || stand_round(sides[0][0], sides[0][1]);
+        const double h = level_.voxel_size, reach = surrounding::reach_along * h;
+        double sheet = std::numeric_limits<double>::infinity(); // the nearest of its points
+        SidesOfLine in_front, behind;
+        for (const Index v : voxels_)
+            for (Index p = level_.first_point[v]; p < level_.first_point[v + 1]; ++p) {
+                const Vec3 off = octree_.positions[p] - at, &facing = octree_.normals[p];
+                const double above = off | normal;
+                const Vec3 out = off - above * normal;
+                const double distance = out.norm(), away = facing | out;
+                if (octree_.is_completed(p) || std::max(std::abs(above), distance) > reach) continue;
+                if ((facing | normal) > angles::facing) {
+                    if (std::abs(above) < handles::speaking_gap * h) sheet = std::min(sheet, distance);
+                } else if (above != 0 && std::abs(away) > angles::halfway * distance) {
+                    (above > 0 ? in_front : behind)[away > 0].push_back({distance, across.angle_of(facing)});
+                }
+            }
+        return is_round(in_front[1], in_front[0], sheet) || is_round(behind[0], behind[1], sheet);
     }
 
 private:
-    template <class Test>
-    bool any_of(Test&& test) const {
-        for (const Index v : voxels_)
-            for (Index p = level_.first_point[v]; p < level_.first_point[v + 1]; ++p)
-                if (test(p)) return true;
-        return false;
+    struct Side {
+        double distance, angle; ///< from a line; of the normal about it
+    };
+    using SidesOfLine = std::array<std::vector<Side>, 2>; ///< facing it, facing away
+
+    static bool is_round(const std::vector<Side>& own, const std::vector<Side>& others, double sheet) {
+        const auto nearest = [](const std::vector<Side>& sides) {
+            double least = std::numeric_limits<double>::infinity();
+            for (const Side& side : sides) least = std::min(least, side.distance);
+            return least;
+        };
+        if (sheet < nearest(own)) return false;
+        const double other = nearest(others);
+        std::vector<double> angles;
+        for (const Side& side : own)
+            if (side.distance < other) angles.push_back(side.angle);
+        return stand_round(angles);
     }
 
     const Octree& octree_;

@@ -14,7 +14,7 @@ namespace hsdm::surrounding {
 /// Why: 150 degrees; what leaves half a turn free lies on one side, and normals may err by 30.
 inline constexpr double widest_gap = 2.6;
 
-/// voxels: to either side along the axis.
+/// voxels: to either side along the axis, and out from it.
 /// Why: walls and gaps that decide wrongly are under a voxel wide.
 inline constexpr double reach_along = 1;
 

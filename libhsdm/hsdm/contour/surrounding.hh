@@ -2,6 +2,7 @@
 // Directions across an axis: what lies all round it.
 
 #include "hsdm/contour/facet_constants.hh"
+#include "hsdm/core/constants.hh"
 #include "hsdm/mesh/area_vector.hh"
 
 #include <algorithm>
@@ -40,6 +41,11 @@ inline int wide_gaps(std::vector<double>& angles) {
     for (std::size_t i = 1; i < angles.size(); ++i)
         wide += angles[i] - angles[i - 1] >= surrounding::widest_gap;
     return wide;
+}
+
+/// Are so many directions enough to say so, and leave no wide gap? Sorts them.
+inline bool stand_round(std::vector<double>& angles) {
+    return angles.size() >= 2 * points_of_plane && wide_gaps(angles) == 0;
 }
 
 } // namespace hsdm

@@ -166,8 +166,7 @@ bool Witnesses::surround(std::span<const Index> ring) const {
         normals[cosine > 0].push_back(tube.turn_of(octree_.normals[p]));
     });
     const std::size_t most = places[0].size() < places[1].size();
-    return places[most].size() >= 2 * points_of_plane && wide_gaps(places[most]) == 0
-           && wide_gaps(normals[most]) < 2; // else the two sides of a wall or gap
+    return stand_round(places[most]) && wide_gaps(normals[most]) < 2; // else the two sides of a wall or gap
 }
 
 auto Witnesses::sheets_across(const Tube& tube, std::span<const Index> voxels, bool facing) const
