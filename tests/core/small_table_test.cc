@@ -11,7 +11,7 @@ TEST_CASE("a small table has what was added since it was emptied, as often as it
           "[core]") {
     support::Random random(1);
     SmallTable table;
-    for (const std::size_t count : {100, 20000, 3, 0, 300}) {
+    for (const unsigned count : {100u, 20000u, 3u, 0u, 300u}) {
         table.clear();
         std::map<Index, Index> all;
         for (std::size_t i = 0; i < count; ++i) {
