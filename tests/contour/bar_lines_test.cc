@@ -4,6 +4,7 @@
 #include "hsdm/contour/dual_contour.hh"
 #include "hsdm/contour/patches.hh"
 #include "hsdm/quality/topology.hh"
+#include "support/crowded_parts.hh"
 
 #include <catch2/catch.hpp>
 
@@ -60,22 +61,9 @@ Solid frame(double width) {
            - box({inner + 0.04, inner + 0.04, 8});
 }
 
-/// Bars between three by three by three places that are 3.7 voxels apart; 54 of them, so genus 54 - 27 + 1.
-/// Their sides lie in planes that are those of several but for a hundredth of a voxel.
-Solid lattice(double width) {
-    const double pitch = 3.7, length = 2 * pitch + width;
-    Solid block = box({length, length, length});
-    for (const double u : {-0.5 * pitch, 0.5 * pitch})
-        for (const double w : {-0.5 * pitch, 0.5 * pitch}) {
-            const double inner = pitch - width;
-            block = block - moved(box({length + 1, inner, inner}), {0, u, w})
-                    - moved(box({inner + 0.02, length + 1, inner + 0.02}), {u, 0, w})
-                    - moved(box({inner + 0.04, inner + 0.04, length + 1}), {u, w, 0});
-        }
-    return block;
-}
+constexpr double lattice_pitch = 3.7;
 double area_of_lattice(double width) {
-    return 54 * 4 * width * (3.7 - width) + 54 * width * width; // as many faces of places are free
+    return 54 * 4 * width * (lattice_pitch - width) + 54 * width * width; // as many faces of places are free
 }
 
 struct Counts {
@@ -251,7 +239,8 @@ TEST_CASE("a crossing counts unless a bar or bore passes it, both ways round", "
 
 TEST_CASE("bars of a lattice hold together where several meet", "[contour][slow]") {
     for (const double width : {1.0, 1.2}) {
-        const Counts lattices = count_right(lattice(width), area_of_lattice(width), 2 - 2 * 28);
+        const Counts lattices =
+            count_right(lattice(width, lattice_pitch), area_of_lattice(width), 2 - 2 * 28);
         INFO("lattices of " << width << ": " << lattices.right << " right");
         CHECK(lattices.right >= lattices.all - 4);
     }

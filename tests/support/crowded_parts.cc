@@ -101,4 +101,18 @@ const std::vector<CrowdedPart>& crowded_parts() {
     return parts;
 }
 
+Solid lattice(double width, double pitch) {
+    const double length = 2 * pitch + width, inner = pitch - width, little = 0.005 * pitch;
+    const auto channel = [&](const Vec3& size, const Vec3& middle) {
+        return box(size).placed(turned({0, 0, 1}, 0, middle));
+    };
+    Solid bars = box({length, length, length});
+    for (const double u : {-0.5 * pitch, 0.5 * pitch})
+        for (const double w : {-0.5 * pitch, 0.5 * pitch})
+            bars = bars - channel({2 * length, inner, inner}, {0, u, w})
+                   - channel({inner + little, 2 * length, inner + little}, {u, 0, w})
+                   - channel({inner + 2 * little, inner + 2 * little, 2 * length}, {u, w, 0});
+    return bars;
+}
+
 } // namespace hsdm::support

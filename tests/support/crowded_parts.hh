@@ -29,4 +29,8 @@ Solid roll(double width);
 /// All of these.
 const std::vector<CrowdedPart>& crowded_parts();
 
+/// Bars between three by three by three places, so far apart; 54 of them, so genus 54 - 27 + 1. Their sides
+/// lie in planes that are those of several but for little, as faces that coincide are not resolved.
+Solid lattice(double width, double pitch);
+
 } // namespace hsdm::support

@@ -120,7 +120,6 @@ public:
 
     /// The ring at a vertex, if it is to be cut.
     std::optional<Ring> ring_to_cut(Index root) {
-        const bool is_own = ask_.is_own(root);
         std::vector<Index> ring = search_.ring_at(root);
         std::vector<Index> sides = fans_.sides_of(ring);
         if (sides.size() < 3) return std::nullopt;
@@ -133,10 +132,10 @@ public:
         if (!is_denied
             && (witnesses.surround(ring) || witnesses.are_missing_across(ring, fans_.facets_beside(sides))))
             return std::nullopt;
-        has_looked_far_ = false; // behind it last: that takes longest, and reaches farthest
-        const bool is_cut =
-            (is_denied || is_narrow || is_triangle || are_contradicted_beside(sides)) && !bounds(sides);
-        looked_far_ |= is_own && has_looked_far_;
+        bool far = false; // behind it last: that takes longest, and reaches farthest
+        const bool is_cut = (is_denied || is_narrow || is_triangle || are_contradicted_beside(sides, far))
+                            && !bounds(sides, far);
+        looked_far_ |= far && ask_.is_own(root);
         if (!is_cut) return std::nullopt;
         return Ring{std::move(ring), std::move(sides)};
     }
@@ -170,17 +169,17 @@ private:
         return Note::unpacked(ask_.note(v, [&] {
             const std::vector<Index> sides = fans_.sides_of(search_.ring_at(v));
             if (sides.size() < 3) return Note().packed();
-            const bool far_before = std::exchange(has_looked_far_, false);
-            Note note{!bounds(sides), false, static_cast<std::uint32_t>(sides.size()),
-                      contradicted_beside(sides)};
-            note.looked_far = std::exchange(has_looked_far_, far_before);
+            Note note;
+            note.counts = !bounds(sides, note.looked_far);
+            note.size = static_cast<std::uint32_t>(sides.size());
+            note.contradicted = contradicted_beside(sides);
             return note.packed();
         }));
     }
 
     /// Is what holds for a ring true of those round the vertices beside it, on average? A hole or rod of the
-    /// part is spoken for along most of its length.
-    bool are_contradicted_beside(std::span<const Index> sides) {
+    /// part is spoken for along most of its length. `far` as in bounds().
+    bool are_contradicted_beside(std::span<const Index> sides, bool& far) {
         std::vector<Index> beside;
         for (const Index f : fans_.facets_beside(sides))
             for (const Index v : fans_.mesh.facet(f)) beside.push_back(v);
@@ -188,7 +187,7 @@ private:
         double sum = 0, count = 0;
         for (const Index v : beside) {
             const Note note = note_of(v);
-            has_looked_far_ |= note.looked_far;
+            far |= note.looked_far;
             if (!note.counts) continue;
             sum += note.contradicted / static_cast<double>(2 * note.size);
             ++count;
@@ -198,8 +197,8 @@ private:
 
     /// Does the ring bound a small part of its own, a knob rather than one of two parts that a bridge joins?
     /// Facets are gathered on both sides by turns, until they meet behind the ring, one side has no more, or
-    /// both have as many as a part.
-    bool bounds(std::span<const Index> sides) {
+    /// both have as many as a part. Sets `far` where some lie beyond what is near.
+    bool bounds(std::span<const Index> sides, bool& far) {
         const PolygonMesh& mesh = fans_.mesh;
         const FacetLinks& links = fans_.links;
         side_of_.clear();
@@ -208,7 +207,7 @@ private:
         const auto visit = [&](Index f, unsigned side) {
             if (side_of_.add(f, side)) {
                 gathered_[side].push_back(f);
-                if (!has_looked_far_) has_looked_far_ = ask_.is_far(f);
+                far = far || ask_.is_far(f);
             } else if (side_of_.at(f) != side) {
                 met = true;
             }
@@ -239,8 +238,7 @@ private:
     RingSearch search_;
     SmallTable side_of_;                         // of a ring, that a facet lies on
     std::array<std::vector<Index>, 2> gathered_; // facets on each
-    bool has_looked_far_ = false;                // behind the ring at a vertex, beyond what is near
-    bool looked_far_ = false;                    // the same, for a vertex that is the part's
+    bool looked_far_ = false;                    // behind a ring at a vertex that is the part's
 };
 
 /// Cuts rings in rounds: all that can be cut without touching each other, then those near by once more.
@@ -276,9 +274,8 @@ public:
     }
 
 private:
-    /// Does a facet face aside from a set of a voxel that a wall or gap passes?
-    bool joins_wall(std::size_t f, bool has_wall, Index v) const {
-        if (!has_wall) return false;
+    /// Does a facet face aside from a set of a voxel?
+    bool joins_wall(Index f, Index v) const {
         const Vec3 area = area_vector(mesh_, mesh_.facet(f));
         const double most = angles::halfway * area.norm();
         return std::ranges::any_of(sets_.of_voxel(v),
@@ -307,7 +304,8 @@ private:
                     const double after = length(i);
                     const Index v = voxel_at(facet[i]);
                     if (is_asked(facet[i])
-                        && (contradicted || joins_wall(f, has_wall[v], v) || before + after < 2 * spacing))
+                        && (contradicted || (has_wall[v] && joins_wall(f, v))
+                            || before + after < 2 * spacing))
                         found.push_back(facet[i]);
                     before = after;
                 }
@@ -319,6 +317,7 @@ private:
     }
 
     Index voxel_at(Index vertex) const { return voxel_[mesh_.origin[vertex]]; }
+
     /// Rings at these vertices may pass what has changed: a flag per vertex. What is on average beside a ring
     /// is not asked again.
     std::vector<std::uint8_t> near_changed(const VertexFans& fans) const {
@@ -354,17 +353,18 @@ private:
     }
 
     /// Those of which none has a vertex at a facet beside another one; keeps the vertices of these facets.
-    std::vector<Ring> apart(std::vector<Ring>&& rings, const VertexFans& fans) {
+    std::vector<Ring> apart(std::vector<Ring> rings, const VertexFans& fans) {
         changed_.clear();
         std::vector<std::uint8_t> touched = large_vector<std::uint8_t>(mesh_.vertex_count());
-        std::erase_if(rings, [&](const Ring& ring) {
-            if (std::ranges::any_of(ring.vertices, [&](Index v) { return touched[v] != 0; })) return true;
+        std::vector<Ring> kept;
+        for (Ring& ring : rings) { // those that come first go first
+            if (std::ranges::any_of(ring.vertices, [&](Index v) { return touched[v] != 0; })) continue;
             for (const Index f : fans.facets_beside(ring.sides))
                 for (const Index v : mesh_.facet(f))
                     if (!std::exchange(touched[v], std::uint8_t{1})) changed_.push_back(v);
-            return false;
-        });
-        return std::move(rings);
+            kept.push_back(std::move(ring));
+        }
+        return kept;
     }
 
     /// Gives the facets on the left of each ring vertices of their own, and closes both sides.
