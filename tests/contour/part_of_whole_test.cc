@@ -162,9 +162,11 @@ TEST_CASE("what is done about intersections follows from sums", "[untangle]") {
 
     sums.triangles = {900, 800, 700, 600, 500, 400, 300};
     sums.facets.fill(untangling::most_pairs + 1);
-    TanglePlan many; // made as it is already
-    CHECK_FALSE(many.weigh(sums));
+    TanglePlan many; // moved as it is already, but what is left has not been counted
+    CHECK(many.weigh(sums));
+    CHECK(many.rounds == untangling::rounds);
     CHECK_FALSE(many.mends);
+    CHECK_FALSE(many.weigh(sums));
 }
 
 TEST_CASE("the largest component is known from parts, whatever their number", "[mesh]") {

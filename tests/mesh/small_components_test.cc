@@ -105,7 +105,7 @@ TEST_CASE("of two components of one size, only the first is the largest", "[mesh
     CHECK(mesh.facet_count() == 40);
 }
 
-TEST_CASE("vertices, their properties and the hints go with their component", "[mesh]") {
+TEST_CASE("hints go with their component, and its vertices with their properties if nothing has them", "[mesh]") {
     PolygonMesh mesh = strips();
     FeatureHints hints;
     for (std::size_t f = 0; f < mesh.facet_count(); ++f)
@@ -113,6 +113,7 @@ TEST_CASE("vertices, their properties and the hints go with their component", "[
     const SmallComponents dropped = drop_small_components(mesh, hints, {.least_facets = 11});
     CHECK(dropped.components == 2);
     CHECK(dropped.facets.count == 12);
+    CHECK(remove_isolated_vertices(mesh) == 28);
     CHECK(measure_topology(mesh).isolated_vertices == 0);
     REQUIRE(mesh.properties[0].values.size() == mesh.vertex_count());
     CHECK(mesh.properties[0].values.front() == 100);
@@ -181,16 +182,13 @@ TEST_CASE("what is thinner than layers lie apart goes with them: cavities, and w
     }
 }
 
-TEST_CASE(
-    "cavities go that a completion closed off, where asked: closed, small, and in the largest component",
-    "[mesh]") {
+TEST_CASE("cavities go that a completion closed off: closed, small, and in the largest component", "[mesh]") {
     struct Inner {
         double width = 3; // in a cube of 20 by 20 by 20, or beside it
         bool inward = true;
         Vec3 at{0, 0, 0};
         bool is_open = false, is_cube_open = false, all_turned = false;
         double shear = 0; // of the cube, whose box is larger then
-        bool asked = true;
     };
     const auto stays = [](const Inner& inner) {
         PolygonMesh mesh;
@@ -213,14 +211,19 @@ TEST_CASE(
         if (inner.all_turned) turn_over(mesh);
         const std::size_t before = mesh.facet_count();
         CHECK(has_cavity(mesh) == (inner.inward && !inner.is_open));
-        drop_splinters(mesh, {.cavities = inner.asked});
-        CHECK((mesh.facet_count() == before || mesh.facet_count() == before - facets));
-        return mesh.facet_count() == before;
+        FeatureHints hints;
+        for (std::size_t side = 0; side < mesh.corners.size(); ++side) // those of the cube are smooth
+            hints.sides.push_back(side < mesh.first[facets] ? EdgeHint::sharp : EdgeHint::smooth);
+        const std::size_t dropped = drop_cavities(mesh, hints).count;
+        CHECK((dropped == 0 || dropped == facets));
+        CHECK(mesh.facet_count() == before - dropped);
+        CHECK(hints.sides.size() == mesh.corners.size());
+        CHECK((std::ranges::count(hints.sides, EdgeHint::sharp) == 0) == (dropped > 0));
+        return dropped == 0;
     };
     for (const bool all_turned : {false, true}) {
         CHECK_FALSE(stays({.all_turned = all_turned}));
         CHECK_FALSE(stays({.at = Vec3(7, 7, -7), .all_turned = all_turned}));
-        CHECK(stays({.all_turned = all_turned, .asked = false}));
         CHECK(stays({.inward = false, .all_turned = all_turned}));
         CHECK(stays({.width = 5, .all_turned = all_turned})); // a sixteenth of the cube's area
         CHECK(stays({.at = Vec3(25, 0, 0), .all_turned = all_turned}));

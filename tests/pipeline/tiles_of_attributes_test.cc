@@ -152,6 +152,28 @@ TEST_CASE("they are in the files of flat arrays, of each format that has them", 
     }
 }
 
+TEST_CASE("they stay with their vertices where small parts go", "[pipeline][tiles]") {
+    PointCloud cloud = painted_torus(true);
+    const PointCloud small = support::sample(support::sphere(0.2), {.points = 1500});
+    for (std::size_t i = 0; i < small.size(); ++i) { // within the ring's hole: amid its voxels' codes
+        cloud.positions.push_back(small.positions[i]);
+        cloud.normals.push_back(small.normals[i]);
+    }
+    paint(cloud);
+    ReconstructOptions options{.depth = 5, .min_component = MinComponent{0.5, true}, .threads = 2};
+    const Reconstruction whole = reconstruct(cloud, options);
+    CHECK(whole.report.rejected.at("components_small") == 1);
+    const FlatReconstruction flat = reconstruct_flat_in_tiles(
+        [&](const auto& visit) { visit(view_of(cloud)); }, options, tiles_of_colors());
+    const support::Folder folder;
+    CHECK((bytes_written(folder, [&](const std::string& path) {
+               write_flat(path, flat, MeshFormat::ply, false);
+           })
+           == bytes_written(folder, [&](const std::string& path) {
+                  write_mesh(path, to_polygons(whole.mesh), MeshFormat::ply, {});
+              })));
+}
+
 TEST_CASE("what only some parts of a cloud have is left out, and told", "[pipeline][tiles]") {
     PointCloud all = painted_torus(true);
     const auto half = [&](bool first) {

@@ -336,7 +336,7 @@ TEST_CASE("what tiles cannot tell is refused, with the reason", "[pipeline][tile
     SECTION("options") {
         CHECK_THROWS_AS(reconstruct_in_tiles(view_of(cloud), {.max_error = MaxError{0.01}}, tiles),
                         OptionError);
-        CHECK_THROWS_AS(reconstruct_in_tiles(view_of(cloud), {.depth = 6, .holes = Holes::close}, tiles),
+        CHECK_THROWS_AS(reconstruct_in_tiles(view_of(cloud), {.depth = 6, .merge_layers = true}, tiles),
                         OptionError);
     }
 }

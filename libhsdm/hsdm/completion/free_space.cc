@@ -53,11 +53,21 @@ FreeSpace::FreeSpace(const Octree& octree, const Viewpoints& viewpoints, double 
         if (points.empty()) continue;
         std::vector<Ray> rays = unwritten_vector<Ray>(points.size());
         for_each_index(points.size(), chunks::quick, [&](Index i) {
-            const Vec3 way = octree.positions[points[i]] - viewpoints.sensors[s];
-            rays[i] = {morton_encode(bin_of(way, morton_levels)), way.norm()};
+            rays[i] = Ray::between(viewpoints.sensors[s], octree.positions[points[i]]);
         });
         views_.push_back(view_of(viewpoints.sensors[s], std::move(rays)));
     }
+}
+
+FreeSpace::FreeSpace(std::span<const Vec3> scanners, std::vector<std::vector<Ray>>&& rays, double voxel_size)
+    : voxel_size_(voxel_size) {
+    for (std::size_t s = 0; s < scanners.size(); ++s)
+        if (!rays[s].empty()) views_.push_back(view_of(scanners[s], std::move(rays[s])));
+}
+
+FreeSpace::Ray FreeSpace::Ray::between(const Vec3& scanner, const Vec3& point) {
+    const Vec3 way = point - scanner;
+    return {morton_encode(bin_of(way, morton_levels)), way.norm()};
 }
 
 FreeSpace::View FreeSpace::view_of(const Vec3& from, std::vector<Ray> rays) {

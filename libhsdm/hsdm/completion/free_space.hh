@@ -5,6 +5,8 @@
 #include "hsdm/normals/orient_normals.hh"
 #include "hsdm/octree/octree.hh"
 
+#include <span>
+
 namespace hsdm {
 
 /// The space between scanners and what they measured. Each scanner has depth maps, coarser and coarser: bins
@@ -21,6 +23,16 @@ public:
     /// origin. `voxel_size`: what is less than two of them in front of a point is not known to be free, as
     /// points have noise and scans do not register. O(n log n), parallel; the same for any number of threads.
     FreeSpace(const Octree& octree, const Viewpoints& viewpoints, double voxel_size);
+
+    /// A point as a scanner saw it: its direction, as a bin of the finest level, and its distance.
+    struct Ray {
+        MortonCode code;
+        double depth;
+        /// Of two places that are not the same.
+        static Ray between(const Vec3& scanner, const Vec3& point);
+    };
+    /// The same of the rays of each scanner, in any order, which are taken.
+    FreeSpace(std::span<const Vec3> scanners, std::vector<std::vector<Ray>>&& rays, double voxel_size);
 
     bool empty() const { return views_.empty(); }
     /// Is a place known to hold nothing? O(scanners).
@@ -39,10 +51,6 @@ private:
         std::vector<Bins> levels; ///< the coarsest first: 2, 4, ... bins along an edge of the cube
 
         bool sees_through(const Vec3& place, double voxel_size) const;
-    };
-    struct Ray {
-        MortonCode code;
-        double depth;
     };
     static View view_of(const Vec3& from, std::vector<Ray> rays);
     static Bins bins_of(const std::vector<Ray>& rays, int level);

@@ -282,6 +282,31 @@ bool may_be_small(const DualContourOptions& options, const PartComponents& part)
     return options.part.is_part() && part.largest < options.splinters.enough();
 }
 
+/// Closes holes within the limits that no gap of the sampling leaves open. A loop that goes on beyond what a
+/// part knows stays open: what it is made of is told with more around it.
+void close_holes(const Octree& octree, const OctreeLevel& level, const DualContourOptions& options,
+                 DualContour& result) {
+    const double h = level.voxel_size;
+    const auto voxel_of = [&](Index v) { return result.voxel[result.mesh.origin[v]]; };
+    FillHolesOptions holes = options.holes;
+    const bool are_limited = std::isfinite(holes.max_diameter);
+    holes.max_diameter *= h;
+    holes.stays_open = [&](std::span<const Index> loop) {
+        if (options.part.is_part() && !are_limited) {
+            const auto near = std::ranges::count_if(loop, options.part.is_near, voxel_of);
+            result.looked_far |= near > 0 && near < std::ssize(loop);
+            if (near < std::ssize(loop)) return true;
+        }
+        const HoleMiddle middle = middle_of_hole(octree, level, result.voxel, result.mesh, loop);
+        if (!(middle.missing_points > holes::least_missing)) return false;
+        if (diameter_of(result.mesh, loop) > options.widest_free * h) return true;
+        if (!options.part.is_part()) result.wide_holes.add({1, middle.position});
+        return false;
+    };
+    if (!result.links) result.links = link_facets(result.mesh);
+    result.holes = fill_holes(result.mesh, *result.links, holes);
+}
+
 /// Anew, after facets have changed.
 void count_intersections(DualContour& result) {
     const SelfIntersections found = find_self_intersections(result.mesh);
@@ -379,7 +404,10 @@ void untangle_whole(const Vec3& origin, double h, const DualContourOptions& opti
     result.cells.emplace(result.mesh, h);
     result.intersections = untangle(result.mesh, how, &*result.cells);
     if (result.intersections.after > 0) {
-        const UntangleCounts merged = mend_tangles(result.mesh, how.nearby);
+        // Long facets meet others farther off, too; parts of a whole add up what is near moved ones.
+        const bool mends = result.intersections.pairs <= untangling::most_pairs;
+        const UntangleCounts merged =
+            mend_tangles(result.mesh, how.nearby, mends ? std::numeric_limits<std::size_t>::max() : 0);
         result.intersections.moved += merged.moved;
         result.intersections.after = merged.after;
         result.intersections.first = merged.first;
@@ -427,17 +455,7 @@ DualContour dual_contour(const Octree& octree, const OctreeLevel& level, const N
     result.handles_cut = handles.cut, result.looked_far = handles.looked_far;
     edited |= result.handles_cut > 0;
     if (options.fill) {
-        FillHolesOptions holes = options.holes;
-        holes.max_diameter *= h;
-        holes.stays_open = [&](std::span<const Index> loop) {
-            const HoleMiddle middle = middle_of_hole(octree, level, result.voxel, result.mesh, loop);
-            if (!(middle.missing_points > holes::least_missing)) return false;
-            if (diameter_of(result.mesh, loop) > options.widest_free * h) return true;
-            if (!options.part.is_part()) result.wide_holes.add({1, middle.position});
-            return false;
-        };
-        if (!result.links) result.links = link_facets(result.mesh);
-        result.holes = fill_holes(result.mesh, *result.links, holes);
+        close_holes(octree, level, options, result);
         changed(result.holes.closed);
     }
     result.doublets = changed(merge_doublets(

@@ -69,7 +69,7 @@ struct DualContour {
     ManifoldCounts manifold;         ///< what make_manifold still had to mend at the end
     std::array<PartComponents, 2> components;   ///< with DualContourOptions::part
     TangleCounts tangles;                       ///< in the place of `intersections`
-    bool looked_far = false;                    ///< as in HandleCounts
+    bool looked_far = false; ///< of a part: as in HandleCounts, or a hole to be closed is known in part
     double misfit_placed = 0, misfit_moved = 0; ///< with RelaxOptions::part_of_whole: see there
 };
 

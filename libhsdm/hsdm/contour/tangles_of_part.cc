@@ -137,11 +137,10 @@ bool TanglePlan::weigh(const TangleCounts& sums) {
     if (weighed) return sums.changed == 0 && std::exchange(replaces, false);
     const auto fewest = std::ranges::min_element(sums.triangles);
     if (*fewest == 0) return false;
-    const auto round = fewest - sums.triangles.begin();
-    const int before = std::exchange(rounds, static_cast<int>(round));
+    rounds = static_cast<int>(fewest - sums.triangles.begin());
     weighed = true;
-    mends = replaces = sums.facets[static_cast<std::size_t>(round)] <= untangling::most_pairs;
-    return mends || rounds != before;
+    mends = replaces = sums.facets[static_cast<std::size_t>(rounds)] <= untangling::most_pairs;
+    return true;
 }
 
 TangleCounts untangle_part(PolygonMesh& mesh, const MeshOfPart& of, const UntangleOptions& options,

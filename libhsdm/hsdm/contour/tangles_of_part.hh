@@ -27,7 +27,7 @@ struct TanglePlan {
     bool replaces = false;           ///< and are where that leaves them, since some were
 
     /// Takes the sums over parts that were made by this plan. Returns whether it is another one now, by which
-    /// parts with intersections near by are to be made again.
+    /// parts with intersections near by are to be made again: what they leave is counted only then.
     bool weigh(const TangleCounts& sums);
 };
 

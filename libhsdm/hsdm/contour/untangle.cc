@@ -57,6 +57,7 @@ UntangleCounts untangle(PolygonMesh& mesh, const UntangleOptions& options, const
         cells ? find_self_intersections(mesh, *cells) : find_self_intersections(mesh);
     UntangleCounts counts;
     counts.before = counts.after = found.triangle_pairs;
+    counts.pairs = found.facet_pairs.size();
     if (found.triangle_pairs == 0) return counts;
     Index first = mesh.facet(found.facet_pairs[0][0])[0];
     counts.first = mesh.positions[first];
@@ -68,11 +69,13 @@ UntangleCounts untangle(PolygonMesh& mesh, const UntangleOptions& options, const
     std::vector<Vec3> best = start;
     const auto first_of = [&] { return around.part.facet(rounds.found().facet_pairs[0][0])[0]; };
     std::size_t fewest = rounds.found().triangle_pairs;
+    counts.pairs = rounds.found().facet_pairs.size();
     if (fewest > 0) first = first_of();
     for (int round = 0; round < options.rounds && rounds.found().triangle_pairs > 0; ++round) {
         rounds.move();
         if (rounds.found().triangle_pairs >= fewest) continue;
         fewest = rounds.found().triangle_pairs;
+        counts.pairs = rounds.found().facet_pairs.size();
         best = around.part.positions;
         if (fewest > 0) first = first_of();
     }

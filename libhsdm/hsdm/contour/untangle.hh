@@ -19,6 +19,7 @@ struct UntangleOptions {
 struct UntangleCounts {
     std::size_t before = 0; ///< pairs of triangles that intersected
     std::size_t after = 0;  ///< pairs that still do
+    std::size_t pairs = 0;  ///< of facets that still do, as far as those near moved ones were looked at
     std::size_t moved = 0;  ///< vertices moved or merged, and quads cut
     Vec3 first{0, 0, 0};    ///< a corner of the first facet that still meets another; anything if none does
 };

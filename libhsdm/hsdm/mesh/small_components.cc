@@ -174,7 +174,7 @@ Occurrences drop_splinters(PolygonMesh& mesh, const SplinterOptions& options) {
                && (facets * options.least_ratio <= largest
                    || (area < options.least_area && facets < largest));
     };
-    const bool looks_at_all = options.layers > 0 || options.cavities;
+    const bool looks_at_all = options.layers > 0;
     if (!looks_at_all
         && std::ranges::none_of(sizes, [&](std::size_t size) { return size > 0 && may_go(size, 0); }))
         return {};
@@ -183,8 +183,7 @@ Occurrences drop_splinters(PolygonMesh& mesh, const SplinterOptions& options) {
     const std::vector<Extent> extents = components.extents(looked_at);
     const auto of_most = std::ranges::max_element(extents, {}, &Extent::area) - extents.begin();
     Extent widest = extents[static_cast<std::size_t>(of_most)];
-    const bool is_closed = open[static_cast<std::size_t>(of_most)] == 0;
-    if (!is_closed) widest.volume = 0;
+    if (open[static_cast<std::size_t>(of_most)] != 0) widest.volume = 0;
     std::vector<EdgeHint> none;
     const SmallComponentFacets small = components_where(mesh, components, [&](std::size_t c) {
         const Extent& extent = extents[c];
@@ -193,13 +192,25 @@ Occurrences drop_splinters(PolygonMesh& mesh, const SplinterOptions& options) {
             return true;
         const bool flat = sizes[c] <= options.most_flat && extent.is_thinner_than(options.flat);
         const std::size_t most_closed = flat ? options.most_flat : options.most_facets;
-        if (may_go(sizes[c], extent.area) && sizes[c] <= (open[c] ? options.most_open : most_closed))
-            return true;
-        return options.cavities && is_closed && open[c] == 0 && extent.faces_against(widest)
-               && extent.is_small_in(widest, 0, options.least_ratio)
-               && components.encloses(static_cast<Index>(of_most), static_cast<Index>(c));
+        return may_go(sizes[c], extent.area) && sizes[c] <= (open[c] ? options.most_open : most_closed);
     });
     return remove_components(mesh, none, small).facets;
+}
+
+Occurrences drop_cavities(PolygonMesh& mesh, FeatureHints& hints) {
+    if (mesh.facet_count() == 0) return {};
+    Components components(mesh);
+    const std::vector<std::uint8_t> open = components.are_open(mesh.facet_count());
+    const std::vector<Extent> extents = components.extents(mesh.facet_count());
+    const auto of_most = std::ranges::max_element(extents, {}, &Extent::area) - extents.begin();
+    const auto widest = static_cast<std::size_t>(of_most);
+    if (open[widest] != 0) return {};
+    const SmallComponentFacets cavities = components_where(mesh, components, [&](std::size_t c) {
+        return open[c] == 0 && extents[c].faces_against(extents[widest])
+               && extents[c].is_small_in(extents[widest], 0, splinters::least_ratio)
+               && components.encloses(static_cast<Index>(widest), static_cast<Index>(c));
+    });
+    return remove_components(mesh, hints.sides, cavities).facets;
 }
 
 SmallComponentFacets find_small_components(const PolygonMesh& mesh, const SmallComponentOptions& options) {
@@ -217,9 +228,7 @@ SmallComponentFacets find_small_components(const PolygonMesh& mesh, const SmallC
 
 SmallComponents drop_small_components(PolygonMesh& mesh, FeatureHints& hints,
                                       const SmallComponentOptions& options) {
-    SmallComponents removed = remove_components(mesh, hints.sides, find_small_components(mesh, options));
-    if (removed.components > 0) remove_isolated_vertices(mesh);
-    return removed;
+    return remove_components(mesh, hints.sides, find_small_components(mesh, options));
 }
 
 } // namespace hsdm

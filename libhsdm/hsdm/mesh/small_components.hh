@@ -25,9 +25,6 @@ struct SplinterOptions {
     /// of it, whatever its number of facets: if it faces the other way (no scanner sees into a cavity), or if
     /// its area times `least_ratio` is at most that. 0: nothing is.
     double layers = 0;
-    /// Do closed cavities of the largest component go, too, if their area times `least_ratio` is at most its?
-    /// Where there were none while the mesh had holes, they were seen through one of them.
-    bool cavities = false;
     /// In the mesh's units squared: components that would be splinters beside a larger one go beside any if
     /// their area is less, as no points can tell of them. 0: none does.
     double least_area = 0;
@@ -44,12 +41,17 @@ struct SplinterOptions {
 
 /// Removes the components (facets joined by shared vertices) that are splinters beside the largest one: a few
 /// facets on their own beside a surface of many. Vertices stay. Returns the number of facets removed, and
-/// where. O(facets), parallel; with cavities O(facets * cavities).
+/// where. O(facets), parallel.
 Occurrences drop_splinters(PolygonMesh& mesh, const SplinterOptions& options = {});
 
 /// Does a closed component face against the one with the most area, as the wall of a cavity does? O(facets),
 /// parallel in parts.
 bool has_cavity(const PolygonMesh& mesh);
+
+/// Removes closed cavities of the component with the most area, if it is closed and theirs times
+/// splinters::least_ratio is at most its, with the hints of their sides. Vertices stay. Returns the number of
+/// facets removed, and where. O(facets * cavities).
+Occurrences drop_cavities(PolygonMesh& mesh, FeatureHints& hints);
 
 struct SmallComponentOptions {
     double least_facets = 0; ///< smaller components go
@@ -71,8 +73,8 @@ struct SmallComponentFacets {
 /// parts.
 SmallComponentFacets find_small_components(const PolygonMesh& mesh, const SmallComponentOptions& options);
 
-/// Removes the components that are smaller than asked for, with their vertices and the hints of their sides.
-/// The largest by area always stays. O(facets), parallel in parts.
+/// Removes the components that are smaller than asked for, with the hints of their sides. Vertices stay, and
+/// so does the largest component by area. O(facets), parallel in parts.
 SmallComponents drop_small_components(PolygonMesh& mesh, FeatureHints& hints,
                                       const SmallComponentOptions& options);
 

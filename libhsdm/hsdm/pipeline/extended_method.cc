@@ -12,6 +12,8 @@
 #include "hsdm/core/constants.hh"
 #include "hsdm/core/large_vector.hh"
 #include "hsdm/mesh/constants.hh"
+#include "hsdm/mesh/manifold.hh"
+#include "hsdm/mesh/small_components.hh"
 #include "hsdm/mesh/turn_outward.hh"
 #include "hsdm/mesh/vertex_normals.hh"
 #include "hsdm/pipeline/attributes.hh"
@@ -19,6 +21,7 @@
 #include "hsdm/pipeline/confidence.hh"
 #include "hsdm/pipeline/constants.hh"
 #include "hsdm/pipeline/extended_graph.hh"
+#include "hsdm/pipeline/measure.hh"
 #include "hsdm/pipeline/options.hh"
 #include "hsdm/pipeline/phase_geometry.hh"
 #include "hsdm/pipeline/sparse_areas.hh"
@@ -36,12 +39,14 @@ namespace {
 const FillHolesOptions every_hole{.max_edges = FillHolesOptions::no_limit, .insist = true};
 
 /// keep closes nothing, close all loops, auto and complete those that are small against the sampling.
-DualContourOptions options_for(const MethodInput& in, double spacing) {
+DualContourOptions options_for(const MethodInput& in, double spacing,
+                               CompletedRound completed = CompletedRound::none) {
     const double spacing_in_voxels = spacing / in.level.voxel_size;
     DualContourOptions result;
     result.fill = in.options.holes != Holes::keep;
     result.better_quads = !wants_adaptive(in.options); // strips of an adaptive grid keep to rows of voxels
-    if (in.options.holes == Holes::close) {
+    result.all_round = completed != CompletedRound::none;
+    if (in.options.holes == Holes::close || completed == CompletedRound::second) {
         result.holes = every_hole;
     } else {
         result.holes.max_diameter = std::max(holes::widest_in_spacings * spacing_in_voxels, holes::widest);
@@ -182,6 +187,7 @@ struct Draft {
     Report report;
     NormalSets sets{};
     DualContour facets{};
+    bool has_new_cavities = false; ///< are those it has of what completes it?
 
     MethodInput input(const MethodInput& measured) const {
         return cloud ? measured.with(cloud->octree, cloud->level) : measured;
@@ -297,37 +303,36 @@ struct Completion {
     Draft draft;
     std::size_t left = 0; ///< edges of the loops that the first round left
 
-    std::size_t meeting() const { return draft.facets.intersections.after; }
+    FacetFaults faults() const { return {draft.facets.intersections.after, left}; }
 };
 
 /// Completes all loops of a draft's mesh, and once more where some are left.
 Completion completed_all(Completing how, Passing passing, const PolygonMesh& mesh, const BoundaryLoops& loops,
                          const Draft& draft, Report& report) {
-    DualContourOptions options = options_for(how.measured, how.base.input.spacing);
-    options.all_round = true;
-    options.splinters.cavities = !has_cavity(mesh);
+    const auto options = [&](CompletedRound round) {
+        return options_for(how.measured, how.base.input.spacing, round);
+    };
     const MethodInput in = draft.input(how.measured);
-    Draft result =
-        how.draft(in, how.points(in, mesh, loops, passing, report), report, completing::shift, options);
-    const BoundaryLoops left = boundary_loops(result.facets.mesh);
+    Draft result = how.draft(in, how.points(in, mesh, loops, passing, report), report, completing::shift,
+                             options(CompletedRound::first));
+    result.has_new_cavities = !has_cavity(mesh);
+    const BoundaryLoops left = loops_of(result.input(how.measured), result.facets);
     if (left.size() == 0) return {std::move(result)};
     how.done += how.share;
     const MethodInput again = result.input(how.measured);
     note_loops(result.facets.mesh, left, true, again.octree.origin, again.frame, result.report);
     const CompletedPoints points = how.points(again, result.facets.mesh, left, passing, result.report);
     result.facets = DualContour(); // frees what is not needed any more
-    options.holes = every_hole;
-    options.widest_free = DualContourOptions().widest_free;
-    return {how.draft(again, points, result.report, completing::shift, options), left.vertices.size()};
+    Draft last = how.draft(again, points, result.report, completing::shift, options(CompletedRound::second));
+    last.has_new_cavities = result.has_new_cavities;
+    return {std::move(last), left.vertices.size()};
 }
 
-/// Completes all loops of a draft. Where more facets meet then than before it is done again with a surface
-/// that keeps beside the mesh, and the one of which fewer meet is taken. Likewise where the first round left
-/// as much border as there was: a surface through the mesh tears it, and what closes the tears does not meet
-/// it where it keeps out of free space.
+/// Completes all loops of a draft; once more with a surface that keeps beside the mesh where that is doubtful,
+/// and takes the better one.
 void complete_all(Completing how, Draft& draft) {
     const std::size_t meeting = draft.facets.intersections.after;
-    const BoundaryLoops loops = boundary_loops(draft.facets.mesh);
+    const BoundaryLoops loops = loops_of(draft.input(how.measured), draft.facets);
     if (loops.size() == 0) return;
     const PolygonMesh mesh = std::move(draft.facets.mesh);
     draft.facets = DualContour(); // frees what is not needed any more
@@ -338,16 +343,14 @@ void complete_all(Completing how, Draft& draft) {
     how.free = &free;
     note_loops(mesh, loops, true, in.octree.origin, in.frame, draft.report);
     Completion result = completed_all(how, Passing::ignored, mesh, loops, draft, draft.report);
-    const bool torn = !free.empty() && result.left >= loops.vertices.size();
-    if (torn || result.meeting() > meeting) {
+    const CompletionCheck check{{meeting, loops.vertices.size()}, !free.empty()};
+    if (check.is_doubtful(result.faults())) {
         Report report = draft.report;
         report.seconds = result.draft.report.seconds;
         how.done += 2 * how.share;
         Completion beside = completed_all(how, Passing::stopped, mesh, loops, draft, report);
         result.draft.report.seconds = beside.draft.report.seconds;
-        if (beside.meeting() < result.meeting()
-            || (torn && beside.meeting() == result.meeting() && beside.left < result.left))
-            result = std::move(beside);
+        if (check.is_better(beside.faults(), result.faults())) result = std::move(beside);
     }
     draft = std::move(result.draft);
 }
@@ -435,7 +438,22 @@ PolygonMesh extended_method(const MethodInput& in, Report& report, FacetKnowledg
     const bool marked = draft.cloud || in.options.holes == Holes::complete;
     PolygonMesh mesh = finished(draft.input(in), std::move(draft.sets), draft.facets, report, known);
     if (marked) return_to(in, draft, draft.facets.voxel, mesh, known);
+    if (draft.has_new_cavities) {
+        drop_cavities(in, mesh, known, report);
+        remove_isolated_vertices(mesh);
+    }
     return mesh;
+}
+
+void drop_cavities(const MethodInput& in, PolygonMesh& facets, FacetKnowledge& known, Report& report) {
+    Occurrences cavities = drop_cavities(facets, known.hints);
+    report.rejected["facets_of_cavities"] = cavities.count;
+    if (cavities.count == 0) return;
+    known.links.reset();
+    known.cells.reset();
+    if (known.intersections.count > 0) known.intersections = facets_that_meet(facets);
+    report.rejected["intersections_left"] = known.intersections.count;
+    note_dropped("facets of cavities that were seen through holes", cavities, in, report);
 }
 
 bool faces_inward(const PolygonMesh& facets) {
@@ -454,7 +472,7 @@ PartFacets facets_of_part(const MethodInput& in, const PartOfLevel& part) {
     const RelationTest related({}, in.level.voxel_size);
     drop_outlier_sets(in.level, related, sets, {.typical = part.typical_set});
     separate_patches(in.octree, in.level, related, sets);
-    DualContourOptions options = options_for(in, part.spacing);
+    DualContourOptions options = options_for(in, part.spacing, part.completed);
     const auto is_own = [&](Index voxel) { return part.owns(in.level.codes[voxel]); };
     options.tangles = part.tangles;
     options.largest = part.largest;

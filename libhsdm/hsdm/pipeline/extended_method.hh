@@ -17,6 +17,10 @@ inline constexpr const char* completed_property = "hsdm_completed"; ///< std::ui
 /// those parts of `known` that it finds out. Throws Cancelled.
 PolygonMesh extended_method(const MethodInput& input, Report& report, FacetKnowledge& known);
 
+/// Which points are of a surface that is completed: those of both rounds are known to go all round a solid,
+/// and after the second no hole is left open.
+enum class CompletedRound : std::uint8_t { none, first, second };
+
 /// What is to be known of the whole level to make part of it.
 struct PartOfLevel {
     double spacing = 0;       ///< of the points
@@ -25,6 +29,7 @@ struct PartOfLevel {
     bool go_back = false;     ///< as in RelaxOptions
     TanglePlan tangles{};     ///< of the whole
     LargestOfWhole largest{}; ///< as in DualContourOptions
+    CompletedRound completed = CompletedRound::none; ///< of its points
     /// Does the part own this voxel, or does it lie near those that it owns?
     std::function<bool(MortonCode)> owns, is_near;
 };
@@ -68,6 +73,30 @@ struct FacetFaults {
 inline bool are_better(const FacetFaults& closed, const FacetFaults& before) {
     return closed.meeting <= before.meeting && closed.border < before.border;
 }
+
+/// How a completion of all loops went, whose border is what its first round left.
+struct CompletionCheck {
+    FacetFaults before;
+    bool sees_space; ///< is it known what scanners looked through?
+
+    /// Did it tear the mesh? A surface through the mesh does, and what closes the tears does not meet it where
+    /// it keeps out of free space.
+    bool tore(const FacetFaults& completed) const { return sees_space && completed.border >= before.border; }
+    /// Is it to be done again, with a surface that keeps beside the mesh?
+    bool is_doubtful(const FacetFaults& completed) const {
+        return tore(completed) || completed.meeting > before.meeting;
+    }
+    /// Is that one the better?
+    bool is_better(const FacetFaults& beside, const FacetFaults& completed) const {
+        return beside.meeting < completed.meeting
+               || (tore(completed) && beside.meeting == completed.meeting
+                   && beside.border < completed.border);
+    }
+};
+
+/// Cavities of a completed solid that the measured one did not have were seen through its holes, and go.
+/// Nothing else of the facets changes but what is known of them.
+void drop_cavities(const MethodInput& input, PolygonMesh& facets, FacetKnowledge& known, Report& report);
 
 /// Of facets in the order of voxels, as facets_of_part() has them, and their loops.
 SlitCompletion slit_completion(const MethodInput& input, double spacing, const PolygonMesh& facets,

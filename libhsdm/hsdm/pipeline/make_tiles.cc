@@ -55,8 +55,8 @@ private:
     int owner(std::size_t tile) const { return cloud_.owner_of(ranges_[tile]); }
     bool is_own(std::size_t tile) const { return owner(tile) == ranks_.rank(); }
 
-    /// Tiles that looked farther behind a ring than they know what is there: up to some 70 voxels along a bar
-    /// (handles::fewest_of_part facets, three or more round it).
+    /// Tiles that looked farther behind a ring than they know what is there, up to some 70 voxels along a bar
+    /// (handles::fewest_of_part facets, three or more round it); or that know part of a loop to be closed.
     void add_far_looking(const std::vector<Piece>& pieces, std::vector<std::uint8_t>& due) const {
         std::vector<std::uint8_t> far_looking(pieces.size(), 0);
         for (std::size_t k = 0; k < pieces.size(); ++k)
@@ -95,7 +95,8 @@ private:
     std::uint64_t key_of(const VoxelRange& range, int ghost) const {
         OrderedHash hash;
         for (const std::uint64_t code : {range.begin, range.end}) hash.add(code);
-        for (const int number : {range.depth, range.cell_shift, ghost, known_.tangles.rounds})
+        const auto completed = static_cast<int>(in_.completed);
+        for (const int number : {range.depth, range.cell_shift, ghost, known_.tangles.rounds, completed})
             hash.add(static_cast<std::uint64_t>(number));
         for (const bool is : {turned_, known_.has_layers, known_.go_back, known_.tangles.weighed,
                               known_.tangles.mends, known_.tangles.replaces})
@@ -148,6 +149,7 @@ private:
             known_.go_back,
             known_.tangles,
             known_.largest,
+            in_.completed,
             [&](MortonCode code) { return range.holds(code); },
             [&](MortonCode code) { return range.is_near(morton_decode(code), ghost / 2); }};
         return make_piece(in, part, range, cloud_.attributes().of_vertices());

@@ -21,6 +21,7 @@ struct TilesInput {
     PieceStore* store = nullptr;         ///< finished pieces are put there; null: they stay in memory
     KeptPasses* kept = nullptr;          ///< where there is a store: keeps them, and has some of them
     std::function<void()> on_outliers{}; ///< called once they have been looked for
+    CompletedRound completed = CompletedRound::none; ///< as in PartOfLevel
 };
 
 /// What making tiles finds out of the whole, so that tiles must be made again; it holds for those made

@@ -3,6 +3,7 @@
 #include "hsdm/cloud/strided.hh"
 #include "hsdm/core/chunks.hh"
 #include "hsdm/core/interruption.hh"
+#include "hsdm/mesh/manifold.hh"
 #include "hsdm/mesh/small_components.hh"
 #include "hsdm/mesh/to_mesh.hh"
 #include "hsdm/mesh/vertex_normals.hh"
@@ -128,6 +129,7 @@ void drop_and_measure(std::span<const Vec3> points, const MethodInput& in, Polyg
     check_error_kept(report, in.frame.unit());
     if (options.min_component) {
         if (drop_small_components(in, facets, known.hints, report) > 0) {
+            remove_isolated_vertices(facets);
             known.links.reset();
             known.cells.reset();
             measured = false;

@@ -12,7 +12,7 @@ namespace hsdm {
 std::vector<Vec3> points_as_read(const PointView& cloud, const CloudFrame& frame, const Octree& octree);
 
 /// Leaves out the components that options.min_component, which must be given, has for too small, and notes
-/// them. Returns how many.
+/// them. Vertices stay. Returns how many.
 std::size_t drop_small_components(const MethodInput& in, PolygonMesh& facets, FeatureHints& hints,
                                   Report& report);
 

@@ -349,7 +349,7 @@ private:
     void make_facets(std::size_t group) {
         facets_ = facets_of_drafts(
             {*cloud_, *survey_, known_, options_, phases_, passes_of(group), ScratchPlace{tiles_.scratch},
-             levels_, [&](TiledDraft& draft, bool turned) { make_tiles_of(draft, turned, group); }},
+             memory_left(), levels_, [&](TiledDraft& draft, bool turned) { make_tiles_of(draft, turned, group); }},
             report_);
         note_cloud(*cloud_, *survey_, duplicates_, known_, report_);
         note_dropped("noisy points between sheets", smoothed_.between, cloud_->frame(), report_);
@@ -366,7 +366,8 @@ private:
         store_.emplace(passes_.pieces(tiles_.scratch));
         const TilesInput in{cloud,    survey,   options_,
                             phases_,  group,    tiles_.ghost_voxels,
-                            &*store_, &passes_, [&] { keep(Pass::strays); }};
+                            &*store_, &passes_, [&] { keep(Pass::strays); },
+                            draft.completed};
         draft.facets = WholeFacets();
         os::give_back_freed_memory();
         std::vector<VoxelRange> ranges;
@@ -444,8 +445,6 @@ void check_options(const ReconstructOptions& options, const TileOptions& tiles) 
     need(!options.max_error, "cannot come with --max-error yet");
     need(!wants_adaptive(options), "cannot come with an adaptive grid yet");
     need(method_for(options) == Method::extended, "cannot come with --method basic yet");
-    need(options.holes == Holes::automatic || options.holes == Holes::keep,
-         "can only come with --holes auto and keep yet");
     need(!options.merge_layers, "cannot come with --merge-layers yet");
     need(!wants_confidence(options), "cannot come with --confidence and --trim yet");
     need(options.debug_dir.empty(), "cannot come with --debug-dir yet");

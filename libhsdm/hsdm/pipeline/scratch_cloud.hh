@@ -13,6 +13,7 @@
 
 namespace hsdm {
 
+struct CompletedPoints;
 class KeptScratch;
 class PointExchange;
 
@@ -109,9 +110,11 @@ public:
     /// The same points in the same cube, but in voxels of this depth, without attributes. For all ranks at
     /// the same time.
     ScratchCloud in_voxels_of(int depth, std::size_t most) const;
-    /// As complete_cloud() of the whole with these points, which lie in the same cube and have no attributes,
-    /// in voxels of this depth; rows tell their kind. For all ranks at the same time.
-    ScratchCloud with_points(const ScratchCloud& added, PointKind kind, int depth, std::size_t most) const;
+    /// As complete_cloud() of the whole with points between sparse ones, which lie in the same cube and have
+    /// no attributes, in voxels of this depth; rows tell their kind. For all ranks at the same time.
+    ScratchCloud with_points(const ScratchCloud& between, int depth, std::size_t most) const;
+    /// The same with completed points, which only the first rank has, in voxels moved by `shift`.
+    ScratchCloud with_points(const CompletedPoints& completed, double shift, std::size_t most) const;
     /// The same cube and ranks without points: each rank gives those of its own cells, of a cell in the order
     /// of octrees, by add() and finish_sorted(), or any by fill(). `carries`: with their attributes. For all
     /// ranks at the same time.
@@ -140,7 +143,13 @@ private:
     /// Without points yet: those of another one, in another cube. `kept`: null: its file has no name.
     ScratchCloud(const ScratchCloud& before, const Cube& cube, const AttributeRows& attributes,
                  KeptScratch* kept);
+    /// This one and what add_points(next, put_row) puts into the larger one, which has this box.
+    using AddPoints = std::function<void(const ScratchCloud& next, const PutRow& put_row)>;
+    ScratchCloud with_points(const Box& added, int depth, double shift, std::size_t most,
+                             const AddPoints& add_points) const;
     void move_points(const ScratchCloud& from, PointKind kind, std::size_t most, const PutRow& put_row) const;
+    PointRow row_of(const Vec3& position, const Vec3& normal, const Vec3& from) const;
+    std::vector<char> row_of_added(PointKind kind) const;
     /// The cell of a position relative to the cube.
     MortonCode cell_of(const Vec3& relative) const;
     template <class Place>

@@ -1,8 +1,11 @@
 #include "hsdm/pipeline/tiled_draft.hh"
 
+#include "hsdm/completion/constants.hh"
 #include "hsdm/core/constants.hh"
 #include "hsdm/io/parked_arrays.hh"
 #include "hsdm/pipeline/attributes.hh"
+#include "hsdm/mesh/small_components.hh"
+#include "hsdm/pipeline/cloud_free_space.hh"
 #include "hsdm/pipeline/cloud_sparse_areas.hh"
 #include "hsdm/pipeline/extended_method.hh"
 
@@ -37,8 +40,7 @@ TiledDraft finer_draft(const DraftsInput& in, TiledDraft coarser, int above,
     const ScratchCloud between =
         points_between(in.cloud, coarser.facets.mesh, in.levels, above, sparse, in.passes);
     coarser = TiledDraft(); // frees what is not needed any more
-    return draft_of(in, in.cloud.with_points(between, PointKind::between, in.cloud.depth() - above,
-                                             in.passes.most_points));
+    return draft_of(in, in.cloud.with_points(between, in.cloud.depth() - above, in.passes.most_points));
 }
 
 /// As the one of extended_method().
@@ -57,35 +59,33 @@ TiledDraft first_draft(const DraftsInput& in) {
     return draft;
 }
 
+BoundaryLoops loops_of(WholeFacets& facets) {
+    std::optional<FacetLinks>& links = facets.known.links;
+    if (!links) links = link_facets(facets.mesh);
+    return boundary_loops(facets.mesh, *links);
+}
+
 /// What closes the slits of a draft, on the first rank.
 SlitCompletion slits_of(const DraftsInput& in, TiledDraft& draft) {
     if (!in.cloud.ranks().is_first()) return {};
     const ScratchCloud& cloud = cloud_of(in, draft);
-    std::optional<FacetLinks>& links = draft.facets.known.links;
-    if (!links) links = link_facets(draft.facets.mesh);
     const OctreeLevel level = cloud.no_voxels();
     const MethodInput method{cloud.frame(), {}, cloud.no_points(), level, in.options, in.phases};
-    return slit_completion(method, in.survey.spacing, draft.facets.mesh,
-                           boundary_loops(draft.facets.mesh, *links));
+    return slit_completion(method, in.survey.spacing, draft.facets.mesh, loops_of(draft.facets));
 }
 
 /// The draft's points and those of the first rank that complete them.
-TiledDraft completed_draft(const DraftsInput& in, const ScratchCloud& cloud, const CompletedPoints& points) {
-    ScratchCloud added = cloud.emptied_aside();
-    added.fill([&](const ScratchCloud::PutRow& put_row) {
-        for (std::size_t i = 0; i < points.positions.size(); ++i) {
-            const Vec3 &p = points.positions[i], &n = points.normals[i];
-            put_row({p[0], p[1], p[2], n[0], n[1], n[2]}, nullptr);
-        }
-    });
-    return draft_of(in, cloud.with_points(added, PointKind::completed, cloud.depth(), in.passes.most_points));
+TiledDraft completed_draft(const DraftsInput& in, const ScratchCloud& cloud, const CompletedPoints& points,
+                           CompletedRound round) {
+    const double shift = round == CompletedRound::none ? 0 : completing::shift;
+    TiledDraft draft = draft_of(in, cloud.with_points(points, shift, in.passes.most_points));
+    draft.completed = round;
+    return draft;
 }
 
 /// On the first rank.
 FacetFaults faults_of(WholeFacets& facets) {
-    std::optional<FacetLinks>& links = facets.known.links;
-    if (!links) links = link_facets(facets.mesh);
-    return {facets.known.intersections.count, boundary_loops(facets.mesh, *links).vertices.size()};
+    return {facets.known.intersections.count, loops_of(facets).vertices.size()};
 }
 
 /// As the one of extended_method(). The facets before wait on scratch meanwhile.
@@ -97,7 +97,7 @@ void complete_slits(const DraftsInput& in, TiledDraft& draft, Report& report) {
         Report noted;
         const ScratchCloud& cloud = cloud_of(in, draft);
         note_loops(draft.facets.mesh, slits.loops, true, cloud.origin(), cloud.frame(), noted);
-        TiledDraft next = completed_draft(in, cloud, slits.points);
+        TiledDraft next = completed_draft(in, cloud, slits.points, CompletedRound::none);
         std::swap(next, draft);
         WholeFacets& before = next.facets;
         FacetFaults faults{};
@@ -115,6 +115,87 @@ void complete_slits(const DraftsInput& in, TiledDraft& draft, Report& report) {
         }
         report.loops.insert(report.loops.end(), noted.loops.begin(), noted.loops.end());
     }
+}
+
+/// Points that close loops of the first rank's facets.
+CompletedPoints completing_points(const DraftsInput& in, const ScratchCloud& cloud, const PolygonMesh& facets,
+                                  const BoundaryLoops& loops, const FreeSpace& free, Passing passing) {
+    if (!in.cloud.ranks().is_first()) return {};
+    std::function<bool(const Vec3&)> empty;
+    if (!free.empty())
+        empty = [&, moved = cloud.origin() - in.cloud.origin()](const Vec3& place) {
+            return free.holds(place + moved);
+        };
+    return complete_surface(facets, loops, cloud.voxel_size(), passing, empty);
+}
+
+/// A draft with all loops of another one completed.
+struct TiledCompletion {
+    TiledDraft draft;
+    std::size_t left = 0; ///< as Completion of extended_method() has it; of the first rank
+    Report noted{};       ///< likewise, the loops of the second round
+
+    FacetFaults faults() const { return {draft.facets.known.intersections.count, left}; }
+};
+
+/// As the one of extended_method(). The draft's facets, whose loops these are, wait on scratch meanwhile.
+TiledCompletion completed_all(const DraftsInput& in, TiledDraft& draft, const BoundaryLoops& loops,
+                              const FreeSpace& free, Passing passing) {
+    Ranks& ranks = in.cloud.ranks();
+    PolygonMesh& mesh = draft.facets.mesh;
+    CompletedPoints points = completing_points(in, cloud_of(in, draft), mesh, loops, free, passing);
+    const bool has_new_cavities = ranks.is_first() && !has_cavity(mesh);
+    ParkedArrays waiting(&in.parking);
+    waiting.park(mesh.positions, mesh.first, mesh.corners);
+    TiledCompletion result{completed_draft(in, cloud_of(in, draft), points, CompletedRound::first)};
+    points = CompletedPoints(); // frees what is not needed any more
+    in.make(result.draft, false);
+    BoundaryLoops left;
+    if (ranks.is_first()) left = loops_of(result.draft.facets);
+    if (ranks.of_first(left.size() > 0)) {
+        result.left = left.vertices.size();
+        const ScratchCloud& again = *result.draft.cloud;
+        note_loops(result.draft.facets.mesh, left, true, again.origin(), again.frame(), result.noted);
+        points = completing_points(in, again, result.draft.facets.mesh, left, free, passing);
+        result.draft.facets = WholeFacets();
+        result.draft = completed_draft(in, again, points, CompletedRound::second);
+        points = CompletedPoints();
+        in.make(result.draft, false);
+    }
+    result.draft.has_new_cavities = has_new_cavities;
+    waiting.restore();
+    return result;
+}
+
+/// As the one of extended_method().
+void complete_all(const DraftsInput& in, TiledDraft& draft, Report& report) {
+    Ranks& ranks = in.cloud.ranks();
+    WholeFacets& facets = draft.facets;
+    BoundaryLoops loops;
+    if (ranks.is_first()) loops = loops_of(facets);
+    if (!ranks.of_first(loops.size() > 0)) return;
+    const FacetFaults before{facets.known.intersections.count, loops.vertices.size()};
+    facets.known = FacetKnowledge(); // frees what is not needed any more
+    release(facets.attributes);
+    const ScratchCloud& cloud = cloud_of(in, draft);
+    note_loops(facets.mesh, loops, true, cloud.origin(), cloud.frame(), report);
+    const FreeSpace free = cloud_free_space(in.cloud, in.passes.most_points, in.memory);
+    const CompletionCheck check{before, !free.empty()};
+    TiledCompletion result = completed_all(in, draft, loops, free, Passing::ignored);
+    if (ranks.of_first(check.is_doubtful(result.faults()))) {
+        WholeFacets& of_first = result.draft.facets;
+        of_first.known.links.reset();
+        ParkedArrays waiting(&in.parking);
+        waiting.park(of_first.mesh.positions, of_first.mesh.first, of_first.mesh.corners,
+                     of_first.known.hints.sides, of_first.attributes);
+        TiledCompletion beside = completed_all(in, draft, loops, free, Passing::stopped);
+        if (ranks.of_first(check.is_better(beside.faults(), result.faults())))
+            result = std::move(beside);
+        else
+            waiting.restore();
+    }
+    report.loops.insert(report.loops.end(), result.noted.loops.begin(), result.noted.loops.end());
+    draft = std::move(result.draft);
 }
 
 /// Colours and scalars everywhere, of vertices whose voxels have no measured points too.
@@ -143,17 +224,44 @@ void return_to(const ScratchCloud& measured, TiledDraft& draft) {
     spread_attributes(draft.facets);
 }
 
+/// So that all meshes that were to be completed tell what was, also where there was nothing to complete.
+void mark_all(WholeFacets& facets) {
+    const AttributeRows before = facets.rows;
+    if (before.has_kinds()) return;
+    facets.rows = before.with_kinds();
+    const std::size_t bytes = before.bytes();
+    std::vector<char> rows = large_vector<char>(facets.mesh.vertex_count() * facets.rows.bytes());
+    for (std::size_t v = 0; v < facets.mesh.vertex_count(); ++v) {
+        char* const row = rows.data() + v * facets.rows.bytes();
+        std::copy_n(facets.attributes.data() + v * bytes, bytes, row);
+        facets.rows.set_kind(row, PointKind::measured);
+    }
+    facets.attributes = std::move(rows);
+}
+
+/// Vertices stay, without facets.
+void leave_out_cavities(const DraftsInput& in, WholeFacets& facets, Report& report) {
+    const ScratchCloud& cloud = in.cloud;
+    const OctreeLevel level = cloud.no_voxels();
+    const MethodInput method{cloud.frame(), {}, cloud.no_points(), level, in.options, in.phases};
+    drop_cavities(method, facets.mesh, facets.known, report);
+}
+
 } // namespace
 
 WholeFacets facets_of_drafts(const DraftsInput& in, Report& report) {
     TiledDraft draft = first_draft(in);
     report.grid.sets = draft.facets.counts.sets;
-    if (in.options.holes == Holes::automatic) complete_slits(in, draft, report);
+    if (in.options.holes == Holes::automatic || in.options.holes == Holes::complete)
+        complete_slits(in, draft, report);
+    if (in.options.holes == Holes::complete) complete_all(in, draft, report);
     Ranks& ranks = in.cloud.ranks();
     const bool turned = ranks.of_first(ranks.is_first() && faces_inward(draft.facets.mesh));
     if (turned) in.make(draft, true);
     report.rejected["normals_turned"] = turned ? in.survey.sums.points() : 0;
     return_to(in.cloud, draft);
+    if (in.options.holes == Holes::complete) mark_all(draft.facets);
+    if (draft.has_new_cavities) leave_out_cavities(in, draft.facets, report);
     return std::move(draft.facets);
 }
 

@@ -17,7 +17,9 @@ struct TiledDraft {
     std::unique_ptr<ScratchCloud> cloud{}; ///< null: the measured points alone
     std::optional<CloudSurvey> survey{};   ///< of that cloud
     TilesKnown known{};                    ///< likewise
-    WholeFacets facets{};                  ///< of the first rank
+    CompletedRound completed = CompletedRound::none; ///< likewise
+    WholeFacets facets{};                            ///< of the first rank
+    bool has_new_cavities = false;                   ///< as extended_method() has it; likewise
 };
 
 struct DraftsInput {
@@ -28,7 +30,8 @@ struct DraftsInput {
     const Phases& phases;
     CloudPasses passes;
     ScratchPlace parking; ///< where facets wait while others are tried
-    int levels = 0;       ///< coarser ones that help out where points are sparse
+    std::size_t memory = 0; ///< bytes left for what is not of tiles
+    int levels = 0;         ///< coarser ones that help out where points are sparse
     /// Makes the facets of a draft in tiles; `turned`: as in PartOfLevel.
     std::function<void(TiledDraft& draft, bool turned)> make{};
 };

@@ -4,6 +4,7 @@
 #include "hsdm/core/large_vector.hh"
 #include "hsdm/core/system.hh"
 #include "hsdm/io/parked_arrays.hh"
+#include "hsdm/mesh/manifold.hh"
 #include "hsdm/mesh/turn_outward.hh"
 #include "hsdm/mesh/vertex_normals.hh"
 #include "hsdm/pipeline/cloud_distance.hh"
@@ -48,8 +49,8 @@ Occurrences measure_error(const WholeInput& in, const PolygonMesh& facets, Repor
     return off;
 }
 
-/// As drop_and_measure(); `relinked` is called where facets are left out, `park` for what may wait while the
-/// error is measured.
+/// As drop_and_measure(); `relinked` is called where facets are left out, whose vertices are there still,
+/// `park` for what may wait while the error is measured.
 void drop_small_and_measure(const WholeInput& in, const MethodInput& method, PolygonMesh& facets,
                             FeatureHints& hints, Report& report, const std::function<void()>& relinked,
                             const std::function<void()>& note_connectivity,
@@ -259,7 +260,11 @@ Reconstruction finish_whole(const WholeInput& in, WholeFacets&& facets, Report&&
     finish_mesh(method, std::move(facets.mesh), std::move(facets.known), std::move(report), result,
                 [&](PolygonMesh& mesh, FacetKnowledge& known, Report& of) {
                     drop_small_and_measure(
-                        in, method, mesh, known.hints, of, [&] { known.links.reset(); },
+                        in, method, mesh, known.hints, of,
+                        [&] {
+                            remove_isolated_vertices(mesh);
+                            known.links.reset();
+                        },
                         [&] { note_topology(mesh, known.links, of); }, [](ParkedArrays&) {});
                 });
     return result;
