@@ -132,7 +132,7 @@ TEST_CASE("a completion that is stopped does not pass through the mesh", "[compl
         mesh.add_facet(corners);
     }
     const auto inside = [&](Passing passing) {
-        const CompletedPoints points = complete_surface(mesh, boundary_loops(mesh), 0.05, passing);
+        const CompletedPoints points = complete_surface(mesh, boundary_loops(mesh), 0.05, {.passing = passing});
         CHECK(points.positions.size() > 9 * 500);
         return std::ranges::count_if(points.positions, [](const Vec3& p) { return p.norm() < 0.89; });
     };
@@ -140,9 +140,19 @@ TEST_CASE("a completion that is stopped does not pass through the mesh", "[compl
     CHECK(inside(Passing::stopped) == 0);
 }
 
+TEST_CASE("a completion that takes more memory than there is says how much", "[completion]") {
+    const PolygonMesh mesh = cut_tube(0.5);
+    const BoundaryLoops loops = boundary_loops(mesh);
+    const CompletedPoints points = complete_surface(mesh, loops, 0.03);
+    CHECK(points.positions.size() > 1000);
+    CHECK(complete_surface(mesh, loops, 0.03, {.most_bytes = 100000000}).positions == points.positions);
+    CHECK_THROWS_WITH(complete_surface(mesh, loops, 0.03, {.most_bytes = 100000}),
+                      Catch::Contains("MB beside the mesh, which is held in memory"));
+}
+
 TEST_CASE("what was looked through decides whether loops are joined", "[completion]") {
     const auto completed = [](PolygonMesh mesh, const std::function<bool(const Vec3&)>& empty) {
-        return complete_surface(mesh, boundary_loops(mesh), 0.06, Passing::ignored, empty);
+        return complete_surface(mesh, boundary_loops(mesh), 0.06, {.empty = empty});
     };
     // Between the two ends of a gap that would be bridged.
     const CompletedPoints parted =

@@ -75,8 +75,8 @@ struct JoinedMesh {
 };
 
 /// Adds points of the surface that closes a mesh, facets outward.
-void add_completing(const PolygonMesh& mesh, const BoundaryLoops& loops, double voxel_size, Passing passing,
-                    const KnownSpace& seen, CompletedPoints& points) {
+void add_completing(const PolygonMesh& mesh, const BoundaryLoops& loops, double voxel_size,
+                    const CompleteOptions& options, const KnownSpace& seen, CompletedPoints& points) {
     if (loops.size() == 0) return;
     // Where facets face inward what goes on from them is no bore of the part.
     const ContinuedSpace continued =
@@ -84,8 +84,9 @@ void add_completing(const PolygonMesh& mesh, const BoundaryLoops& loops, double 
     KnownSpace space = seen;
     if (!continued.empty())
         space.holds = [&](const Vec3& p) { return (seen.holds && seen.holds(p)) || continued.holds(p); };
-    CompletionPatch patch = completion_patch(completion_field(mesh, loops, voxel_size, space), mesh, loops);
-    if (passing == Passing::stopped)
+    CompletionPatch patch = completion_patch(
+        completion_field(mesh, loops, voxel_size, space, options.most_bytes), mesh, loops);
+    if (options.passing == Passing::stopped)
         fair_beside(mesh, patch, space);
     else
         fair(patch, space);
@@ -101,7 +102,8 @@ CompletedPoints complete_surface(const PolygonMesh& mesh, double voxel_size) {
 }
 
 CompletedPoints complete_surface(const PolygonMesh& mesh, const BoundaryLoops& loops, double voxel_size,
-                                 Passing passing, const std::function<bool(const Vec3&)>& empty) {
+                                 const CompleteOptions& options) {
+    const std::function<bool(const Vec3&)>& empty = options.empty;
     check_option(voxel_size > 0 && std::isfinite(voxel_size), "voxel_size", voxel_size, "be positive");
     Box box;
     for (const Vec3& p : mesh.positions) box.add(p);
@@ -123,14 +125,14 @@ CompletedPoints complete_surface(const PolygonMesh& mesh, const BoundaryLoops& l
     const BoundaryLoops turned_loops = inward ? boundary_loops(turned) : BoundaryLoops();
     const BoundaryLoops& border = inward ? turned_loops : loops;
     // A wall of a bore may pass through the mesh as well.
-    const Bores bores =
-        passing == Passing::stopped ? Bores() : find_bores(outward, border, voxel_size, space.holds);
+    const bool may_pass = options.passing == Passing::ignored;
+    const Bores bores = may_pass ? find_bores(outward, border, voxel_size, space.holds) : Bores();
     if (bores.loops.empty()) {
-        add_completing(outward, border, voxel_size, passing, space, points);
+        add_completing(outward, border, voxel_size, options, space, points);
     } else {
         points = points_across(bores.walls, voxel_size);
         const JoinedMesh joined(outward, border, bores);
-        add_completing(joined.mesh, joined.loops, voxel_size, passing, space, points);
+        add_completing(joined.mesh, joined.loops, voxel_size, options, space, points);
     }
     if (inward)
         for (Vec3& n : points.normals) n = -n;

@@ -20,10 +20,14 @@ enum class Passing {
     ignored, ///< it passes: where that is little, what makes facets of the points mends it
     stopped, ///< there it stays beside the mesh, less smooth and farther from what is missing; no bores
 };
-/// The same where the mesh's boundary loops are known. `empty`: is a place known to hold nothing, as a
-/// scanner looked through it? The surface does not close it off.
+struct CompleteOptions {
+    Passing passing = Passing::ignored;
+    /// Is a place known to hold nothing, as a scanner looked through it? The surface does not close it off.
+    std::function<bool(const Vec3&)> empty{};
+    std::size_t most_bytes = std::numeric_limits<std::size_t>::max(); ///< that it may take beside the mesh
+};
+/// The same where the mesh's boundary loops are known. Throws Error if it takes more memory, as reckoned.
 CompletedPoints complete_surface(const PolygonMesh& mesh, const BoundaryLoops& loops, double voxel_size,
-                                 Passing passing = Passing::ignored,
-                                 const std::function<bool(const Vec3&)>& empty = {});
+                                 const CompleteOptions& options = {});
 
 } // namespace hsdm

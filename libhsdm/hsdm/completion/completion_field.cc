@@ -166,10 +166,21 @@ std::vector<MortonCode> points_around(const CompletionField& coarse, const Latti
     return codes;
 }
 
+constexpr std::size_t bytes_per_grid_point = 200;
+
+void refuse_large(std::size_t grid_points, std::size_t most_bytes) {
+    const std::size_t bytes = grid_points * bytes_per_grid_point;
+    if (bytes > most_bytes)
+        throw Error("completing what is missing takes about " + std::to_string((bytes + 999999) / 1000000)
+                    + " MB beside the mesh, which is held in memory; give --memory that much more, or --holes "
+                      "auto");
+}
+
 CompletionField finer_field(const CompletionField& coarse, const LatticePlace& place, const PolygonMesh& mesh,
-                            const BoundaryLoops& border, const KnownSpace& space) {
-    CompletionField field{
-        build_lattice(place, points_around(coarse, place, mesh, border, space), mesh), {}, {}};
+                            const BoundaryLoops& border, const KnownSpace& space, std::size_t most_bytes) {
+    std::vector<MortonCode> points = points_around(coarse, place, mesh, border, space);
+    refuse_large(points.size(), most_bytes);
+    CompletionField field{build_lattice(place, std::move(points), mesh), {}, {}};
     const std::size_t size = field.lattice.size();
     resize_large(field.value, size);
     resize_large(field.known, size);
@@ -186,13 +197,13 @@ CompletionField finer_field(const CompletionField& coarse, const LatticePlace& p
 } // namespace
 
 CompletionField completion_field(const PolygonMesh& mesh, const BoundaryLoops& border, double spacing,
-                                 const KnownSpace& known_space) {
+                                 const KnownSpace& known_space, std::size_t most_bytes) {
     Box box;
     for (const Vec3& p : mesh.positions) box.add(p);
     const std::vector<LatticePlace> levels = places(box, spacing);
     CompletionField field = coarsest_field(levels[0], mesh, known_space);
     for (std::size_t l = 1; l < levels.size(); ++l)
-        field = finer_field(field, levels[l], mesh, border, known_space);
+        field = finer_field(field, levels[l], mesh, border, known_space, most_bytes);
     return field;
 }
 

@@ -41,8 +41,10 @@ struct CompletionField {
 /// the coarser one (after Davis, Marschner, Garr, Levoy, Filling holes in complex surfaces using volumetric
 /// diffusion, 2002). Grid points in known space that come out on the other side are held on its own in a
 /// second solution, unless the mesh is beside them. O(levels * facets + missing area), `spacing` being the
-/// finest grid's; with known space, + its border's area.
+/// finest grid's; with known space, + its border's area. Throws Error if grids take more bytes than this,
+/// reckoned with 200 a grid point (190 to 200 were measured, docs/tiles.md).
 CompletionField completion_field(const PolygonMesh& mesh, const BoundaryLoops& border, double spacing,
-                                 const KnownSpace& known_space = {});
+                                 const KnownSpace& known_space = {},
+                                 std::size_t most_bytes = std::numeric_limits<std::size_t>::max());
 
 } // namespace hsdm

@@ -251,12 +251,12 @@ struct Completing {
     CompletedPoints points(const MethodInput& in, const PolygonMesh& mesh, const BoundaryLoops& loops,
                            Passing passing, Report& report) const {
         return in.phases.run("completion", done, report.seconds.facets, [&] {
-            std::function<bool(const Vec3&)> empty;
+            CompleteOptions how{passing};
             if (free != nullptr && !free->empty())
-                empty = [this, moved = in.octree.origin - measured.octree.origin](const Vec3& place) {
+                how.empty = [this, moved = in.octree.origin - measured.octree.origin](const Vec3& place) {
                     return free->holds(place + moved);
                 };
-            return complete_surface(mesh, loops, in.level.voxel_size, passing, empty);
+            return complete_surface(mesh, loops, in.level.voxel_size, how);
         });
     }
 

@@ -11,10 +11,12 @@ namespace hsdm {
 
 /// Bytes, measured (docs/tiles.md): of a point of the survey; of a voxel while there are pieces, which lie on
 /// disk; in the end, as a half-edge mesh with all properties or in flat arrays, as far as they are read, and
-/// of these while the error is measured, in memory or as far as they are read; and of what is there before.
+/// of these while the error is measured, in memory or as far as they are read, and while they are completed;
+/// and of what is there before.
 inline constexpr std::size_t bytes_per_point = 260, bytes_per_voxel_of_pieces = 10,
                              bytes_per_voxel_of_mesh = 660, bytes_per_voxel_of_parked_mesh = 130,
                              bytes_per_voxel_in_error = 130, bytes_per_voxel_parked_in_error = 65,
+                             bytes_per_voxel_in_completion = 160,
                              bytes_of_program = std::size_t{64} << 20;
 
 /// In the end, of a number of a vertex of a half-edge mesh, as it is made of flat arrays.

@@ -8,6 +8,7 @@
 #include "hsdm/pipeline/cloud_free_space.hh"
 #include "hsdm/pipeline/cloud_sparse_areas.hh"
 #include "hsdm/pipeline/extended_method.hh"
+#include "hsdm/pipeline/tile_plan.hh"
 
 #include <numeric>
 #include <utility>
@@ -121,12 +122,14 @@ void complete_slits(const DraftsInput& in, TiledDraft& draft, Report& report) {
 CompletedPoints completing_points(const DraftsInput& in, const ScratchCloud& cloud, const PolygonMesh& facets,
                                   const BoundaryLoops& loops, const FreeSpace& free, Passing passing) {
     if (!in.cloud.ranks().is_first()) return {};
-    std::function<bool(const Vec3&)> empty;
+    CompleteOptions how{passing};
+    const std::size_t of_mesh = facets.vertex_count() * bytes_per_voxel_in_completion;
+    how.most_bytes = in.memory - std::min(in.memory, of_mesh);
     if (!free.empty())
-        empty = [&, moved = cloud.origin() - in.cloud.origin()](const Vec3& place) {
+        how.empty = [&, moved = cloud.origin() - in.cloud.origin()](const Vec3& place) {
             return free.holds(place + moved);
         };
-    return complete_surface(facets, loops, cloud.voxel_size(), passing, empty);
+    return complete_surface(facets, loops, cloud.voxel_size(), how);
 }
 
 /// A draft with all loops of another one completed.
