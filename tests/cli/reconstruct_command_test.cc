@@ -198,7 +198,7 @@ TEST_CASE("what does not go with bounded memory is refused before any work", "[c
     folder.write("scan.xyz", xyz(sphere_scan(500)));
     for (const char* option :
          {"--memory much --depth 5", "--memory 0 --depth 5", "--scratch .",
-          "--memory 1M --depth 5 --holes close", "--resume", "--memory 1M --depth 5 --resume",
+          "--memory 1M --depth 5 --merge-layers", "--resume", "--memory 1M --depth 5 --resume",
           "--memory 1M --resume --scratch . scan.xyz", "--memory 1M --levels 4:5",
           "--memory 1M --max-error 1%", "--memory 1M --depth 5 --html a.html"}) {
         const CommandResult result = run(folder, std::string("reconstruct scan.xyz -o a.off ") + option);
@@ -214,7 +214,7 @@ TEST_CASE("a cloud that fits in the bounded memory is done in one piece, with an
     std::filesystem::create_directory(folder / "scratch");
     folder.write("scan.xyz", xyz(sphere_scan(500)));
     for (const char* option :
-         {"", "--normals estimate --depth 4", "--max-error 1% --stage quads", "--holes close"}) {
+         {"", "--normals estimate --depth 4", "--max-error 1% --stage quads", "--merge-layers"}) {
         const std::string call = std::string("reconstruct scan.xyz --quiet ") + option;
         INFO(call);
         REQUIRE(run(folder, call + " -o one.ply").status == 0);

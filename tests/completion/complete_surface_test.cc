@@ -132,7 +132,8 @@ TEST_CASE("a completion that is stopped does not pass through the mesh", "[compl
         mesh.add_facet(corners);
     }
     const auto inside = [&](Passing passing) {
-        const CompletedPoints points = complete_surface(mesh, boundary_loops(mesh), 0.05, {.passing = passing});
+        const CompletedPoints points =
+            complete_surface(mesh, boundary_loops(mesh), 0.05, {.passing = passing});
         CHECK(points.positions.size() > 9 * 500);
         return std::ranges::count_if(points.positions, [](const Vec3& p) { return p.norm() < 0.89; });
     };

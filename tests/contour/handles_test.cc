@@ -151,7 +151,8 @@ TEST_CASE("points across a ring of edges deny it where none lie as on a rod or i
     for (const bool turned_normals : {false, true}) {
         const BridgedBoxes boxes(turned_normals, 3); // the gap is 0.85 voxels wide
         const auto is_denied = [&](const Octree& octree) {
-            return Witnesses(octree, boxes.stages.level, boxes.part.voxel, boxes.mesh).deny(boxes.ring);
+            return Witnesses(octree, boxes.stages.level, boxes.part.voxel, boxes.mesh)
+                .deny(boxes.ring, boxes.beside());
         };
         const Octree& octree = boxes.stages.octree;
         CHECK(is_denied(octree));

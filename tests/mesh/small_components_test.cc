@@ -1,3 +1,4 @@
+#include "hsdm/mesh/manifold.hh"
 #include "hsdm/mesh/small_components.hh"
 #include "hsdm/mesh/turn_outward.hh"
 #include "hsdm/quality/topology.hh"
@@ -105,7 +106,8 @@ TEST_CASE("of two components of one size, only the first is the largest", "[mesh
     CHECK(mesh.facet_count() == 40);
 }
 
-TEST_CASE("hints go with their component, and its vertices with their properties if nothing has them", "[mesh]") {
+TEST_CASE("hints go with their component, and its vertices with their properties if nothing has them",
+          "[mesh]") {
     PolygonMesh mesh = strips();
     FeatureHints hints;
     for (std::size_t f = 0; f < mesh.facet_count(); ++f)

@@ -61,12 +61,26 @@ void check_same_completed(const Reconstruction& whole, const Reconstruction& til
     CHECK(cavities(one) == cavities(other));
 }
 
-/// Of one process and of three ranks.
+std::string bytes_of_ply(const auto& write) {
+    const support::Folder folder;
+    write(folder / "mesh");
+    return support::read_file(folder / "mesh");
+}
+
+/// Of one process, in flat arrays too, and of three ranks.
 Reconstruction check_completed_everywhere(const PointCloud& cloud, const ReconstructOptions& options) {
     Reconstruction whole = reconstruct(cloud, options);
     TileReport how;
     check_same_completed(whole, reconstruct_in_tiles(view_of(cloud), options, tiles_to_complete(9000), &how));
     CHECK(how.tiles > 1);
+    const FlatReconstruction flat = reconstruct_flat_in_tiles(
+        [&](const auto& visit) { visit(view_of(cloud)); }, options, tiles_to_complete(9000));
+    const std::string one = bytes_of_ply(
+        [&](const std::string& path) { write_mesh(path, to_polygons(whole.mesh), MeshFormat::ply, {}); });
+    CHECK(one.find("hsdm_completed") != std::string::npos);
+    CHECK((one == bytes_of_ply([&](const std::string& path) {
+               write_flat(path, flat, MeshFormat::ply, false);
+           }))); // not told: megabytes
     check_same_completed(whole, support::reconstruct_by_ranks(3, cloud, options, tiles_to_complete(9000)));
     return whole;
 }
@@ -75,8 +89,8 @@ Reconstruction check_completed_everywhere(const PointCloud& cloud, const Reconst
 
 TEST_CASE("what is missing of a solid is completed in tiles as in one piece", "[pipeline][tiles][slow]") {
     const bool inward = GENERATE(false, true);
-    const Reconstruction whole = check_completed_everywhere(
-        broken_ring(inward), {.depth = 5, .holes = Holes::complete, .threads = 2});
+    const Reconstruction whole =
+        check_completed_everywhere(broken_ring(inward), {.depth = 5, .holes = Holes::complete, .threads = 2});
     CHECK(whole.report.mesh.closed);
     CHECK(loops_completed(whole.report) == 2);
     CHECK((whole.report.rejected.at("normals_turned") > 0) == inward);
@@ -85,7 +99,8 @@ TEST_CASE("what is missing of a solid is completed in tiles as in one piece", "[
 TEST_CASE("what scanners looked through stays open space in tiles as in one piece",
           "[pipeline][tiles][slow]") {
     // A cup from two sides, above its rim: its bottom within and below is what nobody saw.
-    const Solid cup = support::cylinder(1, 1.4) - support::cylinder(0.8, 1.4).placed({.shift = Vec3(0, 0, 0.3)});
+    const support::Solid cup =
+        support::cylinder(1, 1.4) - support::cylinder(0.8, 1.4).placed({.shift = Vec3(0, 0, 0.3)});
     PointCloud cloud = support::scan_from({Vec3(4, 0, 2.2), Vec3(-4, 0.5, 2.4)}, cup, 1.3, {.points = 40000});
     const Reconstruction whole =
         check_completed_everywhere(cloud, {.depth = 5, .holes = Holes::complete, .threads = 2});
@@ -98,7 +113,8 @@ TEST_CASE("what scanners looked through stays open space in tiles as in one piec
         Catch::Contains("MB, which is held in memory"));
 }
 
-TEST_CASE("a run that was ended goes on with tiles of each round of a completion", "[pipeline][tiles][slow]") {
+TEST_CASE("a run that was ended goes on with tiles of each round of a completion",
+          "[pipeline][tiles][slow]") {
     const PointCloud cloud = broken_ring(false);
     const ReconstructOptions options{.depth = 5, .holes = Holes::complete, .threads = 2};
     const Reconstruction whole = reconstruct(cloud, options);
@@ -116,11 +132,12 @@ TEST_CASE("a run that was ended goes on with tiles of each round of a completion
     CHECK(again.kept_tiles == again.tiles);
 }
 
-TEST_CASE("a completion that tears the mesh is done again in tiles as in one piece", "[pipeline][tiles][slow]") {
+TEST_CASE("a completion that tears the mesh is done again in tiles as in one piece",
+          "[pipeline][tiles][slow]") {
     // A bowl whose outer bottom nobody saw: its first round leaves loops, the second meets what is there.
-    const Solid bowl = (support::sphere(1) - support::sphere(0.92))
-                       - support::box({3, 3, 3}).placed({.shift = Vec3(0, 0, 1.7)});
-    const PointCloud all = support::sample(bowl, {.points = 40000});
+    const support::Solid bowl = (support::sphere(1) - support::sphere(0.92))
+                                - support::box({3, 3, 3}).placed({.shift = Vec3(0, 0, 1.7)});
+    const PointCloud all = support::sample(bowl, {.points = 12000});
     PointCloud cloud;
     for (std::size_t i = 0; i < all.size(); ++i) {
         const Vec3& p = all.positions[i];
@@ -129,9 +146,42 @@ TEST_CASE("a completion that tears the mesh is done again in tiles as in one pie
         cloud.normals.push_back(all.normals[i]);
     }
     ReconstructOptions options{.holes = Holes::complete, .threads = 2};
-    options.voxel_size = 0.06;
-    const Reconstruction whole = check_completed_everywhere(cloud, options);
-    CHECK(whole.report.mesh.closed);
+    options.voxel_size = 0.1;
+    const Reconstruction whole = reconstruct(cloud, options);
+    CHECK(whole.report.mesh.euler == 2);
+    CHECK(loops_completed(whole.report) == 1); // the better one left none; the first one left two
+
+    // Tiles that are kept are not those of the first round before.
+    const support::Folder folder;
+    for (const bool kept_all : {false, true}) {
+        KeptScratch kept(folder / ".", 0, {{"input", "a bowl"}});
+        TileReport how;
+        check_same_completed(
+            whole, reconstruct_in_tiles(view_of(cloud), options, tiles_to_complete(14000, &kept), &how));
+        CHECK(how.tiles > 1);
+        CHECK((how.kept_tiles == how.tiles) == kept_all);
+    }
+}
+
+TEST_CASE("cavities of a completion go from tiles as from one piece", "[pipeline][tiles][slow]") {
+    // A block with a pocket, of which the mouth and the bottom were seen.
+    const support::Solid block =
+        support::box({2, 2, 2}) - support::box({0.3, 0.3, 0.8}).placed({.shift = {0, 0, 1}});
+    const PointCloud all = support::sample(block, {.points = 40000});
+    PointCloud cloud;
+    Scalar height{"height", {}, false};
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        const Vec3& p = all.positions[i];
+        if (std::max(std::abs(p[0]), std::abs(p[1])) < 0.16 && p[2] > 0.68 && p[2] < 0.99) continue;
+        cloud.positions.push_back(p);
+        cloud.normals.push_back(all.normals[i]);
+        height.values.push_back(p[2]);
+    }
+    cloud.scalars = {height};
+    const Reconstruction whole =
+        check_completed_everywhere(cloud, {.depth = 5, .holes = Holes::complete, .threads = 2});
+    CHECK(whole.report.rejected.at("facets_of_cavities") > 0);
+    CHECK(whole.report.mesh.euler == 2);
     CHECK(whole.report.mesh.components == 1);
 }
 
@@ -148,8 +198,7 @@ TEST_CASE("tiles that know part of a loop to be closed are made again with more 
     const Reconstruction whole = reconstruct(cloud, options);
     CHECK(whole.report.mesh.closed);
     TileReport how;
-    check_same_completed(whole,
-                         reconstruct_in_tiles(view_of(cloud), options, tiles_to_complete(6000), &how));
+    check_same_completed(whole, reconstruct_in_tiles(view_of(cloud), options, tiles_to_complete(6000), &how));
     CHECK(how.widened > 0);
 }
 

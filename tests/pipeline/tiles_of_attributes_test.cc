@@ -166,9 +166,8 @@ TEST_CASE("they stay with their vertices where small parts go", "[pipeline][tile
     const FlatReconstruction flat = reconstruct_flat_in_tiles(
         [&](const auto& visit) { visit(view_of(cloud)); }, options, tiles_of_colors());
     const support::Folder folder;
-    CHECK((bytes_written(folder, [&](const std::string& path) {
-               write_flat(path, flat, MeshFormat::ply, false);
-           })
+    CHECK((bytes_written(folder,
+                         [&](const std::string& path) { write_flat(path, flat, MeshFormat::ply, false); })
            == bytes_written(folder, [&](const std::string& path) {
                   write_mesh(path, to_polygons(whole.mesh), MeshFormat::ply, {});
               })));

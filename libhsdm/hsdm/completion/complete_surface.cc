@@ -84,8 +84,8 @@ void add_completing(const PolygonMesh& mesh, const BoundaryLoops& loops, double 
     KnownSpace space = seen;
     if (!continued.empty())
         space.holds = [&](const Vec3& p) { return (seen.holds && seen.holds(p)) || continued.holds(p); };
-    CompletionPatch patch = completion_patch(
-        completion_field(mesh, loops, voxel_size, space, options.most_bytes), mesh, loops);
+    CompletionPatch patch =
+        completion_patch(completion_field(mesh, loops, voxel_size, space, options.most_bytes), mesh, loops);
     if (options.passing == Passing::stopped)
         fair_beside(mesh, patch, space);
     else

@@ -3,6 +3,9 @@
 
 #include "hsdm/completion/completion_field.hh"
 
+#include <functional>
+#include <limits>
+
 namespace hsdm {
 
 struct CompletedPoints {

@@ -2,6 +2,7 @@
 
 #include "hsdm/completion/conjugate_gradients.hh"
 #include "hsdm/completion/constants.hh"
+#include "hsdm/errors.hh"
 
 #include <cmath>
 
@@ -171,9 +172,10 @@ constexpr std::size_t bytes_per_grid_point = 200;
 void refuse_large(std::size_t grid_points, std::size_t most_bytes) {
     const std::size_t bytes = grid_points * bytes_per_grid_point;
     if (bytes > most_bytes)
-        throw Error("completing what is missing takes about " + std::to_string((bytes + 999999) / 1000000)
-                    + " MB beside the mesh, which is held in memory; give --memory that much more, or --holes "
-                      "auto");
+        throw Error(
+            "completing what is missing takes about " + std::to_string((bytes + 999999) / 1000000)
+            + " MB beside the mesh, which is held in memory; give --memory that much more, or --holes "
+              "auto");
 }
 
 CompletionField finer_field(const CompletionField& coarse, const LatticePlace& place, const PolygonMesh& mesh,

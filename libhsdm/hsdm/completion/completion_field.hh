@@ -5,6 +5,7 @@
 #include "hsdm/mesh/fill_holes.hh"
 
 #include <functional>
+#include <limits>
 
 namespace hsdm {
 

@@ -40,11 +40,15 @@ std::size_t in_full_bins(const std::vector<Ray>& rays, int level, std::size_t le
 FreeSpace::FreeSpace(const Octree& octree, const Viewpoints& viewpoints, double voxel_size)
     : voxel_size_(voxel_size) {
     if (viewpoints.sensors.empty()) return;
+    std::vector<Index> place; // per scanner, the first one at the same place: they are one
+    for (const Vec3& sensor : viewpoints.sensors)
+        place.push_back(
+            static_cast<Index>(std::ranges::find(viewpoints.sensors, sensor) - viewpoints.sensors.begin()));
     std::vector<Index> scanner = large_vector<Index>(octree.size());
     for_each_index(octree.size(), chunks::light, [&](Index i) {
         const Vec3* from = is_measured(octree.source[i]) ? viewpoints.of(octree.source[i]) : nullptr;
         scanner[i] = from != nullptr && *from != octree.positions[i]
-                         ? static_cast<Index>(from - viewpoints.sensors.data())
+                         ? place[static_cast<std::size_t>(from - viewpoints.sensors.data())]
                          : no_index;
     });
     const Groups seen(scanner, viewpoints.sensors.size());

@@ -67,8 +67,8 @@ struct DualContour {
     std::optional<FacetCells> cells; ///< the mesh's facets by voxel; empty if untangling moved vertices
     std::optional<FacetLinks> links; ///< the mesh's; empty if facets changed after they were found
     ManifoldCounts manifold;         ///< what make_manifold still had to mend at the end
-    std::array<PartComponents, 2> components;   ///< with DualContourOptions::part
-    TangleCounts tangles;                       ///< in the place of `intersections`
+    std::array<PartComponents, 2> components; ///< with DualContourOptions::part
+    TangleCounts tangles;                     ///< in the place of `intersections`
     bool looked_far = false; ///< of a part: as in HandleCounts, or a hole to be closed is known in part
     double misfit_placed = 0, misfit_moved = 0; ///< with RelaxOptions::part_of_whole: see there
 };

@@ -124,13 +124,14 @@ public:
         std::vector<Index> sides = fans_.sides_of(ring);
         if (sides.size() < 3) return std::nullopt;
         const Witnesses& witnesses = ask_.witnesses;
-        const bool is_denied = witnesses.deny(ring), is_narrow = !is_denied && witnesses.is_narrow(ring);
+        const std::vector<Index> beside = fans_.facets_beside(sides);
+        const bool is_denied = witnesses.deny(ring, beside),
+                   is_narrow = !is_denied && witnesses.is_narrow(ring);
         const double share = share_contradicted(sides);
         const bool is_contradicted = share >= handles::least_contradicted;
         const bool is_triangle = sides.size() == 3 && share > 0; // four facets go round a bar or bore
         if (!(is_denied || is_narrow || is_triangle || is_contradicted)) return std::nullopt;
-        if (!is_denied
-            && (witnesses.surround(ring) || witnesses.are_missing_across(ring, fans_.facets_beside(sides))))
+        if (!is_denied && (witnesses.surround(ring) || witnesses.are_missing_across(ring, beside)))
             return std::nullopt;
         bool far = false; // behind it last: that takes longest, and reaches farthest
         const bool is_cut = (is_denied || is_narrow || is_triangle || are_contradicted_beside(sides, far))

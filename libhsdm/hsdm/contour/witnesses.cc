@@ -124,7 +124,14 @@ Vec3 Witnesses::axis_across(const Tube& tube, std::span<const Index> voxels) con
     return count >= two_agree ? sum : Vec3(0, 0, 0);
 }
 
-bool Witnesses::deny(std::span<const Index> ring) const {
+bool Witnesses::face_away(const Tube& tube, std::span<const Index> facets) const {
+    double away = 0;
+    for (const Index f : facets)
+        away += area_vector(mesh_, mesh_.facet(f)) | tube.out_to(centroid(mesh_, mesh_.facet(f)));
+    return away > 0;
+}
+
+bool Witnesses::deny(std::span<const Index> ring, std::span<const Index> beside) const {
     const double reach = surrounding::reach_along * level_.voxel_size;
     const std::vector<Index> voxels = voxels_at(ring);
     const Vec3 axis = axis_across(Tube(mesh_, ring, reach), voxels); // the ring may stand askew
@@ -143,11 +150,14 @@ bool Witnesses::deny(std::span<const Index> ring) const {
             (along < 0 ? below : above) = along < 0 ? std::max(below, along) : std::min(above, along);
         }
     });
-    const auto has_sheet = [&](const std::vector<double>& places) {
-        return std::ranges::any_of(places, [&](double t) { return t > below && t < above; });
-    };
+    const bool facing = face_away(tube, beside);
+    double first = above, last = below; // of the sides of a gap, or of a wall
+    for (const double t : across[facing])
+        if (t > below) first = std::min(first, t);
+    for (const double t : across[!facing])
+        if (t < above) last = std::max(last, t);
     const double h = spacing(points_in(voxels), voxels.size());
-    return has_sheet(across[0]) && has_sheet(across[1]) && above - below > h
+    return first < last && above - below > h
            && tube.length() * (above - below) > handles::least_missing * h * h;
 }
 
@@ -200,10 +210,7 @@ bool Witnesses::are_missing_across(std::span<const Index> ring, std::span<const 
     if (has_completed(voxels)) return false;
     // The ring may lie at one end of what it goes round.
     const Tube tube(mesh_, ring, 2 * surrounding::reach_along * level_.voxel_size);
-    double away = 0;
-    for (const Index f : beside)
-        away += area_vector(mesh_, mesh_.facet(f)) | tube.out_to(centroid(mesh_, mesh_.facet(f)));
-    const std::vector<Across> across = sheets_across(tube, voxels, away > 0);
+    const std::vector<Across> across = sheets_across(tube, voxels, face_away(tube, beside));
     const double h = spacing(points_in(voxels), voxels.size());
     double bare = 0;
     for (std::size_t i = 0; i < ring.size(); ++i) { // triangles from the middle to the ring's edges

@@ -18,11 +18,12 @@ public:
     /// in its plane?
     bool speak_for(Index facet) const;
 
-    /// Do points say that a ring of vertices is none of the part's? Some face along its axis, within it, one
-    /// way and the other, and the stretch of the axis that they stand in holds no point of a bore or rod,
-    /// though some should lie there: a tunnel passes a wall like that, and a bridge a gap. At the mouth of a
-    /// bore all face one way.
-    bool deny(std::span<const Index> ring) const;
+    /// Do points say that a ring of vertices is none of the part's? Some face along its axis, within it, as
+    /// the two sides of a gap where the facets beside the ring face away from its axis, and else of a wall;
+    /// and the stretch of the axis that they stand in holds no point of a bore or rod, though some should lie
+    /// there: a tunnel passes a wall like that, and a bridge a gap. At the mouth of a bore all face one way,
+    /// and round the foot of a post on a wall they are those of the wall.
+    bool deny(std::span<const Index> ring, std::span<const Index> beside) const;
 
     /// Do points on all sides of a ring of vertices face its axis, or all face away from it? So they do in a
     /// bore and round a rod. A web or tunnel that is none lacks the points of one side at least, or they are
@@ -43,6 +44,9 @@ public:
 
 private:
     class Tube; // round a ring of vertices
+
+    /// Do facets face away from a tube's axis, as round a rod, rather than face it?
+    bool face_away(const Tube& tube, std::span<const Index> facets) const;
 
     double spacing(std::size_t points, std::size_t voxels) const;
     Index voxel_of(Index vertex) const { return voxel_[mesh_.origin[vertex]]; }

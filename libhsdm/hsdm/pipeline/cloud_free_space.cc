@@ -2,6 +2,7 @@
 
 #include "hsdm/core/chunks.hh"
 #include "hsdm/core/large_vector.hh"
+#include "hsdm/errors.hh"
 #include "hsdm/pipeline/cell_attributes.hh"
 
 namespace hsdm {
@@ -49,7 +50,8 @@ Rays gathered(Rays&& own, Ranks& ranks) {
     for (const Ranks::Bytes& got : ranks.exchange(std::move(out))) {
         if (got.empty()) continue;
         ByteReader reader(got);
-        for (std::vector<FreeSpace::Ray>& rays : all) append_large(rays, reader.take_vector<FreeSpace::Ray>());
+        for (std::vector<FreeSpace::Ray>& rays : all)
+            append_large(rays, reader.take_vector<FreeSpace::Ray>());
     }
     return all;
 }
@@ -60,7 +62,8 @@ FreeSpace cloud_free_space(const ScratchCloud& cloud, std::size_t most, std::siz
     const CloudScanners scanners = cloud.extent().scanners.placed(cloud.frame(), cloud.origin());
     if (scanners.sensors.empty() || cloud.frame().has_cuts()) return {};
     Ranks& ranks = cloud.ranks();
-    refuse_large(ranks.sum(cloud.points_here()), memory);
+    const std::size_t points = ranks.sum(cloud.points_here());
+    if (ranks.is_first()) refuse_large(points, memory);
     std::int64_t facing = 0;
     Rays rays = gathered(own_rays(cloud, scanners.sensors, most, facing), ranks);
     std::int64_t all = 0;

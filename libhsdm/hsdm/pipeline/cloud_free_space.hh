@@ -9,7 +9,7 @@ namespace hsdm {
 /// FreeSpace of all measured points, relative to the cube, on the first rank; none on others, nor where no
 /// scanner is known, most points' normals do not face theirs, or space was cut between parts. Points are read
 /// `most` or a cell's at a time. For all ranks at the same time. Throws Error if it takes more memory than
-/// this, in bytes.
+/// the first rank has for it, in bytes.
 FreeSpace cloud_free_space(const ScratchCloud& cloud, std::size_t most, std::size_t memory);
 
 } // namespace hsdm

@@ -21,13 +21,13 @@
 #include "hsdm/pipeline/confidence.hh"
 #include "hsdm/pipeline/constants.hh"
 #include "hsdm/pipeline/extended_graph.hh"
-#include "hsdm/pipeline/measure.hh"
 #include "hsdm/pipeline/options.hh"
 #include "hsdm/pipeline/phase_geometry.hh"
 #include "hsdm/pipeline/sparse_areas.hh"
 #include "hsdm/pipeline/voxel_order.hh"
 #include "hsdm/pipeline/warnings.hh"
 #include "hsdm/quality/topology.hh"
+#include "hsdm/spatial/self_intersections.hh"
 
 #include <algorithm>
 #include <optional>
@@ -328,8 +328,8 @@ Completion completed_all(Completing how, Passing passing, const PolygonMesh& mes
     return {std::move(last), left.vertices.size()};
 }
 
-/// Completes all loops of a draft; once more with a surface that keeps beside the mesh where that is doubtful,
-/// and takes the better one.
+/// Completes all loops of a draft; once more with a surface that keeps beside the mesh where that is
+/// doubtful, and takes the better one.
 void complete_all(Completing how, Draft& draft) {
     const std::size_t meeting = draft.facets.intersections.after;
     const BoundaryLoops loops = loops_of(draft.input(how.measured), draft.facets);
@@ -451,7 +451,12 @@ void drop_cavities(const MethodInput& in, PolygonMesh& facets, FacetKnowledge& k
     if (cavities.count == 0) return;
     known.links.reset();
     known.cells.reset();
-    if (known.intersections.count > 0) known.intersections = facets_that_meet(facets);
+    if (known.intersections.count > 0) {
+        const SelfIntersections left = find_self_intersections(facets);
+        known.intersections.count = left.triangle_pairs;
+        if (left.triangle_pairs > 0)
+            known.intersections.first = facets.positions[facets.facet(left.facet_pairs[0][0])[0]];
+    }
     report.rejected["intersections_left"] = known.intersections.count;
     note_dropped("facets of cavities that were seen through holes", cavities, in, report);
 }

@@ -23,12 +23,12 @@ enum class CompletedRound : std::uint8_t { none, first, second };
 
 /// What is to be known of the whole level to make part of it.
 struct PartOfLevel {
-    double spacing = 0;       ///< of the points
-    double typical_set = 0;   ///< points in a normal set, the mean over points
-    bool turned = false;      ///< do the points' normals point into a closed solid?
-    bool go_back = false;     ///< as in RelaxOptions
-    TanglePlan tangles{};     ///< of the whole
-    LargestOfWhole largest{}; ///< as in DualContourOptions
+    double spacing = 0;                              ///< of the points
+    double typical_set = 0;                          ///< points in a normal set, the mean over points
+    bool turned = false;                             ///< do the points' normals point into a closed solid?
+    bool go_back = false;                            ///< as in RelaxOptions
+    TanglePlan tangles{};                            ///< of the whole
+    LargestOfWhole largest{};                        ///< as in DualContourOptions
     CompletedRound completed = CompletedRound::none; ///< of its points
     /// Does the part own this voxel, or does it lie near those that it owns?
     std::function<bool(MortonCode)> owns, is_near;
@@ -79,8 +79,8 @@ struct CompletionCheck {
     FacetFaults before;
     bool sees_space; ///< is it known what scanners looked through?
 
-    /// Did it tear the mesh? A surface through the mesh does, and what closes the tears does not meet it where
-    /// it keeps out of free space.
+    /// Did it tear the mesh? A surface through the mesh does, and what closes the tears does not meet it
+    /// where it keeps out of free space.
     bool tore(const FacetFaults& completed) const { return sees_space && completed.border >= before.border; }
     /// Is it to be done again, with a surface that keeps beside the mesh?
     bool is_doubtful(const FacetFaults& completed) const {

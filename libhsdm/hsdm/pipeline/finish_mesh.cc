@@ -46,7 +46,7 @@ void warn_of(const char* what, Occurrences relative, const MethodInput& in, Repo
 
 /// Lists the loops of the facets, and warns of them where none should be left.
 void note_open_loops(const MethodInput& in, const PolygonMesh& facets, Report& report) {
-    const bool closed = closes_all(in.options.holes) && in.options.trim == 0;
+    const bool closed = must_be_closed(in.options);
     if (!closed && report.mesh.boundary_loops == 0) return;
     const BoundaryLoops loops = boundary_loops(facets);
     if (in.options.measure) note_loops(facets, loops, false, in.octree.origin, in.frame, report);

@@ -102,6 +102,7 @@ private:
                               known_.tangles.mends, known_.tangles.replaces})
             hash.add(std::uint64_t{is});
         for (const std::size_t count : known_.largest) hash.add(std::uint64_t{count});
+        hash.add(in_.added);
         hash.add(std::uint64_t{in_.survey.sums.points()});
         hash.add(std::uint64_t{cloud_.attributes().bytes()});
         hash.add(cloud_.cube_extent());

@@ -22,6 +22,7 @@ struct TilesInput {
     KeptPasses* kept = nullptr;          ///< where there is a store: keeps them, and has some of them
     std::function<void()> on_outliers{}; ///< called once they have been looked for
     CompletedRound completed = CompletedRound::none; ///< as in PartOfLevel
+    std::uint64_t added = 0; ///< tells clouds apart by the points that were added to them
 };
 
 /// What making tiles finds out of the whole, so that tiles must be made again; it holds for those made

@@ -18,6 +18,10 @@ bool must_estimate(const PointView& cloud, const ReconstructOptions& options);
 inline bool closes_all(Holes holes) {
     return holes == Holes::close || holes == Holes::complete;
 }
+/// Likewise, and none by cutting facets off?
+inline bool must_be_closed(const ReconstructOptions& options) {
+    return closes_all(options.holes) && options.trim == 0;
+}
 /// Was the size of voxels asked for, by these options or, as the report's say, as one of several levels?
 bool are_voxels_asked_for(const ReconstructOptions& options, const Report& report);
 bool wants_adaptive(const ReconstructOptions& options);

@@ -347,10 +347,11 @@ private:
     }
 
     void make_facets(std::size_t group) {
-        facets_ = facets_of_drafts(
-            {*cloud_, *survey_, known_, options_, phases_, passes_of(group), ScratchPlace{tiles_.scratch},
-             memory_left(), levels_, [&](TiledDraft& draft, bool turned) { make_tiles_of(draft, turned, group); }},
-            report_);
+        facets_ =
+            facets_of_drafts({*cloud_, *survey_, known_, options_, phases_, passes_of(group),
+                              ScratchPlace{tiles_.scratch}, memory_left(), levels_,
+                              [&](TiledDraft& draft, bool turned) { make_tiles_of(draft, turned, group); }},
+                             report_);
         note_cloud(*cloud_, *survey_, duplicates_, known_, report_);
         note_dropped("noisy points between sheets", smoothed_.between, cloud_->frame(), report_);
         if (smoothed_.noise > 0) report_.rejected["points_moved"] = survey_->sums.points();
@@ -364,10 +365,10 @@ private:
         CloudSurvey& survey = draft.cloud ? *draft.survey : *survey_;
         TilesKnown& known = draft.cloud ? draft.known : known_;
         store_.emplace(passes_.pieces(tiles_.scratch));
-        const TilesInput in{cloud,    survey,   options_,
-                            phases_,  group,    tiles_.ghost_voxels,
-                            &*store_, &passes_, [&] { keep(Pass::strays); },
-                            draft.completed};
+        const TilesInput in{cloud,           survey,     options_,
+                            phases_,         group,      tiles_.ghost_voxels,
+                            &*store_,        &passes_,   [&] { keep(Pass::strays); },
+                            draft.completed, draft.added};
         draft.facets = WholeFacets();
         os::give_back_freed_memory();
         std::vector<VoxelRange> ranges;

@@ -16,8 +16,7 @@ namespace hsdm {
 inline constexpr std::size_t bytes_per_point = 260, bytes_per_voxel_of_pieces = 10,
                              bytes_per_voxel_of_mesh = 660, bytes_per_voxel_of_parked_mesh = 130,
                              bytes_per_voxel_in_error = 130, bytes_per_voxel_parked_in_error = 65,
-                             bytes_per_voxel_in_completion = 160,
-                             bytes_of_program = std::size_t{64} << 20;
+                             bytes_per_voxel_in_completion = 160, bytes_of_program = std::size_t{64} << 20;
 
 /// In the end, of a number of a vertex of a half-edge mesh, as it is made of flat arrays.
 inline constexpr std::size_t bytes_per_property = 2 * sizeof(double);

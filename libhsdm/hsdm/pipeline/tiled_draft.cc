@@ -2,14 +2,16 @@
 
 #include "hsdm/completion/constants.hh"
 #include "hsdm/core/constants.hh"
+#include "hsdm/core/hash.hh"
 #include "hsdm/io/parked_arrays.hh"
-#include "hsdm/pipeline/attributes.hh"
 #include "hsdm/mesh/small_components.hh"
+#include "hsdm/pipeline/attributes.hh"
 #include "hsdm/pipeline/cloud_free_space.hh"
 #include "hsdm/pipeline/cloud_sparse_areas.hh"
 #include "hsdm/pipeline/extended_method.hh"
 #include "hsdm/pipeline/tile_plan.hh"
 
+#include <algorithm>
 #include <numeric>
 #include <utility>
 
@@ -81,6 +83,13 @@ TiledDraft completed_draft(const DraftsInput& in, const ScratchCloud& cloud, con
     const double shift = round == CompletedRound::none ? 0 : completing::shift;
     TiledDraft draft = draft_of(in, cloud.with_points(points, shift, in.passes.most_points));
     draft.completed = round;
+    OrderedHash hash;
+    for (const std::vector<Vec3>* places : {&points.positions, &points.normals})
+        for (const Vec3& p : *places)
+            for (const double x : p) hash.add(x);
+    Ranks::Bytes bytes;
+    put(hash.value(), bytes);
+    draft.added = ByteReader(cloud.ranks().of_first(std::move(bytes))).take<std::uint64_t>();
     return draft;
 }
 
@@ -118,13 +127,16 @@ void complete_slits(const DraftsInput& in, TiledDraft& draft, Report& report) {
     }
 }
 
-/// Points that close loops of the first rank's facets.
+/// Points that close loops of the first rank's facets. What scanners looked through is found each time: it
+/// is not held while tiles are made. `sees_space`: is any known?
 CompletedPoints completing_points(const DraftsInput& in, const ScratchCloud& cloud, const PolygonMesh& facets,
-                                  const BoundaryLoops& loops, const FreeSpace& free, Passing passing) {
-    if (!in.cloud.ranks().is_first()) return {};
+                                  const BoundaryLoops& loops, Passing passing, bool* sees_space = nullptr) {
     CompleteOptions how{passing};
     const std::size_t of_mesh = facets.vertex_count() * bytes_per_voxel_in_completion;
     how.most_bytes = in.memory - std::min(in.memory, of_mesh);
+    const FreeSpace free = cloud_free_space(in.cloud, in.passes.most_points, how.most_bytes);
+    if (sees_space) *sees_space = !free.empty();
+    if (!in.cloud.ranks().is_first()) return {};
     if (!free.empty())
         how.empty = [&, moved = cloud.origin() - in.cloud.origin()](const Vec3& place) {
             return free.holds(place + moved);
@@ -135,42 +147,45 @@ CompletedPoints completing_points(const DraftsInput& in, const ScratchCloud& clo
 /// A draft with all loops of another one completed.
 struct TiledCompletion {
     TiledDraft draft;
-    std::size_t left = 0; ///< as Completion of extended_method() has it; of the first rank
-    Report noted{};       ///< likewise, the loops of the second round
+    std::size_t left = 0;    ///< as Completion of extended_method() has it; of the first rank
+    bool sees_space = false; ///< likewise, as in CompletionCheck
+    Report noted{};          ///< likewise, the loops of the second round
 
     FacetFaults faults() const { return {draft.facets.known.intersections.count, left}; }
 };
 
-/// As the one of extended_method(). The draft's facets, whose loops these are, wait on scratch meanwhile.
-TiledCompletion completed_all(const DraftsInput& in, TiledDraft& draft, const BoundaryLoops& loops,
-                              const FreeSpace& free, Passing passing) {
+/// As the one of extended_method(). `park` is called once the draft's facets, whose loops these are, are not
+/// read any more.
+TiledCompletion completed_all(const DraftsInput& in, const TiledDraft& draft, const BoundaryLoops& loops,
+                              Passing passing, const std::function<void()>& park) {
     Ranks& ranks = in.cloud.ranks();
-    PolygonMesh& mesh = draft.facets.mesh;
-    CompletedPoints points = completing_points(in, cloud_of(in, draft), mesh, loops, free, passing);
+    const PolygonMesh& mesh = draft.facets.mesh;
+    TiledCompletion result;
+    CompletedPoints points =
+        completing_points(in, cloud_of(in, draft), mesh, loops, passing, &result.sees_space);
     const bool has_new_cavities = ranks.is_first() && !has_cavity(mesh);
-    ParkedArrays waiting(&in.parking);
-    waiting.park(mesh.positions, mesh.first, mesh.corners);
-    TiledCompletion result{completed_draft(in, cloud_of(in, draft), points, CompletedRound::first)};
+    park();
+    result.draft = completed_draft(in, cloud_of(in, draft), points, CompletedRound::first);
     points = CompletedPoints(); // frees what is not needed any more
     in.make(result.draft, false);
     BoundaryLoops left;
     if (ranks.is_first()) left = loops_of(result.draft.facets);
     if (ranks.of_first(left.size() > 0)) {
         result.left = left.vertices.size();
-        const ScratchCloud& again = *result.draft.cloud;
-        note_loops(result.draft.facets.mesh, left, true, again.origin(), again.frame(), result.noted);
-        points = completing_points(in, again, result.draft.facets.mesh, left, free, passing);
+        const ScratchCloud& cloud = *result.draft.cloud;
+        note_loops(result.draft.facets.mesh, left, true, cloud.origin(), cloud.frame(), result.noted);
+        points = completing_points(in, cloud, result.draft.facets.mesh, left, passing);
         result.draft.facets = WholeFacets();
-        result.draft = completed_draft(in, again, points, CompletedRound::second);
+        result.draft = completed_draft(in, cloud, points, CompletedRound::second);
         points = CompletedPoints();
         in.make(result.draft, false);
     }
+    result.draft.facets.known.links.reset();
     result.draft.has_new_cavities = has_new_cavities;
-    waiting.restore();
     return result;
 }
 
-/// As the one of extended_method().
+/// As the one of extended_method(). Facets that are not looked at wait on scratch.
 void complete_all(const DraftsInput& in, TiledDraft& draft, Report& report) {
     Ranks& ranks = in.cloud.ranks();
     WholeFacets& facets = draft.facets;
@@ -182,20 +197,25 @@ void complete_all(const DraftsInput& in, TiledDraft& draft, Report& report) {
     release(facets.attributes);
     const ScratchCloud& cloud = cloud_of(in, draft);
     note_loops(facets.mesh, loops, true, cloud.origin(), cloud.frame(), report);
-    const FreeSpace free = cloud_free_space(in.cloud, in.passes.most_points, in.memory);
-    const CompletionCheck check{before, !free.empty()};
-    TiledCompletion result = completed_all(in, draft, loops, free, Passing::ignored);
+    PolygonMesh& mesh = facets.mesh;
+    ParkedArrays waiting(&in.parking);
+    TiledCompletion result = completed_all(in, draft, loops, Passing::ignored,
+                                           [&] { waiting.park(mesh.positions, mesh.first, mesh.corners); });
+    const CompletionCheck check{before, result.sees_space};
     if (ranks.of_first(check.is_doubtful(result.faults()))) {
-        WholeFacets& of_first = result.draft.facets;
-        of_first.known.links.reset();
-        ParkedArrays waiting(&in.parking);
-        waiting.park(of_first.mesh.positions, of_first.mesh.first, of_first.mesh.corners,
-                     of_first.known.hints.sides, of_first.attributes);
-        TiledCompletion beside = completed_all(in, draft, loops, free, Passing::stopped);
-        if (ranks.of_first(check.is_better(beside.faults(), result.faults())))
+        WholeFacets& first = result.draft.facets;
+        ParkedArrays other(&in.parking);
+        other.park(first.mesh.positions, first.mesh.first, first.mesh.corners, first.known.hints.sides,
+                   first.attributes);
+        waiting.restore();
+        TiledCompletion beside =
+            completed_all(in, draft, loops, Passing::stopped, [&] { mesh = PolygonMesh(); });
+        if (ranks.of_first(check.is_better(beside.faults(), result.faults()))) {
             result = std::move(beside);
-        else
-            waiting.restore();
+        } else {
+            beside.draft = TiledDraft(); // its memory first
+            other.restore();
+        }
     }
     report.loops.insert(report.loops.end(), result.noted.loops.begin(), result.noted.loops.end());
     draft = std::move(result.draft);

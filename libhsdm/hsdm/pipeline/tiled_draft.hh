@@ -14,10 +14,11 @@ namespace hsdm {
 
 /// A cloud and what comes of it.
 struct TiledDraft {
-    std::unique_ptr<ScratchCloud> cloud{}; ///< null: the measured points alone
-    std::optional<CloudSurvey> survey{};   ///< of that cloud
-    TilesKnown known{};                    ///< likewise
+    std::unique_ptr<ScratchCloud> cloud{};           ///< null: the measured points alone
+    std::optional<CloudSurvey> survey{};             ///< of that cloud
+    TilesKnown known{};                              ///< likewise
     CompletedRound completed = CompletedRound::none; ///< likewise
+    std::uint64_t added = 0;                         ///< as in TilesInput
     WholeFacets facets{};                            ///< of the first rank
     bool has_new_cavities = false;                   ///< as extended_method() has it; likewise
 };
@@ -29,7 +30,7 @@ struct DraftsInput {
     const ReconstructOptions& options;
     const Phases& phases;
     CloudPasses passes;
-    ScratchPlace parking; ///< where facets wait while others are tried
+    ScratchPlace parking;   ///< where facets wait while others are tried
     std::size_t memory = 0; ///< bytes left for what is not of tiles
     int levels = 0;         ///< coarser ones that help out where points are sparse
     /// Makes the facets of a draft in tiles; `turned`: as in PartOfLevel.

@@ -11,6 +11,7 @@
 #include "hsdm/pipeline/finish_mesh.hh"
 #include "hsdm/pipeline/join_pieces.hh"
 #include "hsdm/pipeline/measure.hh"
+#include "hsdm/pipeline/options.hh"
 #include "hsdm/pipeline/warnings.hh"
 #include "hsdm/quality/degenerate_facets.hh"
 
@@ -108,11 +109,14 @@ public:
                 in_, method_, mesh(), hints_, report_, [&] { relink(); },
                 [&] {
                     note_connectivity();
+                    warn_of_open_loops();
                     keep_to_manifold();
                     os::give_back_freed_memory();
                 },
                 [&](ParkedArrays& waiting) { park_links(waiting); });
-            if (!in_.options.measure) keep_to_manifold();
+            if (in_.options.measure) return;
+            warn_of_open_loops();
+            keep_to_manifold();
         });
         os::give_back_freed_memory();
         in_.phases.run("mesh", 0.85, seconds.mesh, [&] { face_outward(); });
@@ -143,6 +147,14 @@ private:
         if (report_.mesh.boundary_loops > 0)
             note_loops(mesh(), boundary_loops(mesh(), links()), false, in_.cloud.origin(), in_.cloud.frame(),
                        report_);
+    }
+
+    void warn_of_open_loops() {
+        if (!must_be_closed(in_.options)) return;
+        const BoundaryLoops loops = boundary_loops(mesh(), links());
+        if (loops.size() == 0) return;
+        warn(warning_of::open_loops, {loops.size(), mesh().positions[loops[0][0]] + in_.cloud.origin()},
+             in_.cloud.frame(), report_);
     }
 
     /// The mesh as its links have it: a vertex for each fan, and none without facets.
