@@ -168,6 +168,10 @@ TEST_CASE("points across a ring of edges deny it where none lie as on a rod or i
             round.normals[i] = away.normalized();
         }
         CHECK_FALSE(is_denied(round));
+        Octree wall = octree; // as if the two sides of the gap were those of a wall
+        for (Vec3& n : wall.normals)
+            if (std::abs(n[0]) > 0.7) n = -n;
+        CHECK_FALSE(is_denied(wall));
     }
 }
 

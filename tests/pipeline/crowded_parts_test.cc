@@ -56,21 +56,28 @@ TEST_CASE("a fin of half a voxel cut by a slot as narrow is two parts, in any po
 
 TEST_CASE("posts stay between plates thinner than a voxel, in any pose, and what they leave free",
           "[pipeline]") {
-    // A ring round the foot of a post has the plate's two sides within it.
-    const Solid plates = box({10, 8, 0.7}) | box({10, 8, 0.7}).placed({.shift = {0, 0, 3.4}});
+    // A ring round the foot of a post has the two sides of its plate within it, and a gap beyond.
+    const auto plate = [](double thickness, double z) {
+        return box({10, 8, thickness}).placed({.shift = {0, 0, z}});
+    };
     const Solid post = box({1.5, 1.5, 3}); // ends within the plates: faces that coincide are not resolved
-    const Solid stack =
-        plates | post.placed({.shift = {-2.5, -1.5, 1.7}}) | post.placed({.shift = {2.5, 2, 1.7}});
-    for (std::uint64_t pose = 1; pose <= 8; ++pose) {
-        PointCloud cloud = sample(stack.placed(random_pose(pose)), {.points = 4000, .seed = pose});
-        for (const bool turned : {false, true}) {
-            INFO("pose " << pose << (turned ? ", turned" : ""));
-            if (turned)
-                for (Vec3& n : cloud.normals) n = -n;
-            const Reconstruction result = reconstruct(cloud, {.voxel_size = 1});
-            CHECK(faults(to_polygons(result.mesh)) == "");
-            CHECK(result.report.mesh.components == 1);
-            CHECK(result.report.mesh.euler == 0);
+    const Solid posts = post.placed({.shift = {-2.5, -1.5, 1.7}}) | post.placed({.shift = {2.5, 2, 1.7}});
+    for (const bool above_a_gap : {false, true}) {
+        const double thickness = above_a_gap ? 0.5 : 0.7;
+        const Solid stack = plate(thickness, 0) | plate(thickness, 3.4) | posts;
+        const Solid solid = above_a_gap ? stack | plate(thickness, -1) : stack;
+        for (std::uint64_t pose = 1; pose <= 8; ++pose) {
+            PointCloud cloud = sample(solid.placed(random_pose(pose)),
+                                      {.points = above_a_gap ? 6000u : 4000u, .seed = pose});
+            for (const bool turned : {false, true}) {
+                INFO("pose " << pose << (above_a_gap ? ", above a gap" : "") << (turned ? ", turned" : ""));
+                if (turned)
+                    for (Vec3& n : cloud.normals) n = -n;
+                const Reconstruction result = reconstruct(cloud, {.voxel_size = 1});
+                CHECK(faults(to_polygons(result.mesh)) == "");
+                CHECK(result.report.mesh.components == (above_a_gap ? 2u : 1u));
+                CHECK(result.report.mesh.euler == (above_a_gap ? 2 : 0));
+            }
         }
     }
 }

@@ -127,7 +127,7 @@ public:
         const std::vector<Index> beside = fans_.facets_beside(sides);
         const bool is_denied = witnesses.deny(ring, beside),
                    is_narrow = !is_denied && witnesses.is_narrow(ring);
-        const double share = share_contradicted(sides);
+        const double share = contradicted(beside) / static_cast<double>(2 * sides.size());
         const bool is_contradicted = share >= handles::least_contradicted;
         const bool is_triangle = sides.size() == 3 && share > 0; // four facets go round a bar or bore
         if (!(is_denied || is_narrow || is_triangle || is_contradicted)) return std::nullopt;
@@ -144,13 +144,9 @@ public:
 
 private:
     /// Of the facets beside a ring, how many no points speak for.
-    std::uint32_t contradicted_beside(std::span<const Index> sides) const {
-        const std::vector<Index> beside = fans_.facets_beside(sides);
+    std::uint32_t contradicted(std::span<const Index> beside) const {
         return static_cast<std::uint32_t>(
             std::ranges::count_if(beside, [&](Index f) { return !ask_.speak_for(f); }));
-    }
-    double share_contradicted(std::span<const Index> sides) const {
-        return contradicted_beside(sides) / static_cast<double>(2 * sides.size());
     }
 
     /// The ring at a vertex as those beside it count it.
@@ -173,7 +169,7 @@ private:
             Note note;
             note.counts = !bounds(sides, note.looked_far);
             note.size = static_cast<std::uint32_t>(sides.size());
-            note.contradicted = contradicted_beside(sides);
+            note.contradicted = contradicted(fans_.facets_beside(sides));
             return note.packed();
         }));
     }

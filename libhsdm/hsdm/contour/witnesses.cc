@@ -156,8 +156,9 @@ bool Witnesses::deny(std::span<const Index> ring, std::span<const Index> beside)
         if (t > below) first = std::min(first, t);
     for (const double t : across[!facing])
         if (t < above) last = std::max(last, t);
+    const double near = handles::beside_ring * level_.voxel_size; // the ring may lie at one end
     const double h = spacing(points_in(voxels), voxels.size());
-    return first < last && above - below > h
+    return first < last && first < near && last > -near && above - below > h
            && tube.length() * (above - below) > handles::least_missing * h * h;
 }
 

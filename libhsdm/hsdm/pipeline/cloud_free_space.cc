@@ -10,9 +10,6 @@ namespace {
 
 using Rays = std::vector<std::vector<FreeSpace::Ray>>; // by scanner
 
-/// A ray, and what is made of it: a bin, or several of coarser levels.
-constexpr std::size_t bytes_per_ray = 3 * sizeof(FreeSpace::Ray);
-
 void refuse_large(std::size_t points, std::size_t memory) {
     const std::size_t bytes = points * bytes_per_ray;
     if (bytes > memory)

@@ -78,12 +78,14 @@ SlitCompletion slits_of(const DraftsInput& in, TiledDraft& draft) {
 }
 
 /// The draft's points and those of the first rank that complete them.
-TiledDraft completed_draft(const DraftsInput& in, const ScratchCloud& cloud, const CompletedPoints& points,
+TiledDraft completed_draft(const DraftsInput& in, const TiledDraft& before, const CompletedPoints& points,
                            CompletedRound round) {
+    const ScratchCloud& cloud = cloud_of(in, before);
     const double shift = round == CompletedRound::none ? 0 : completing::shift;
     TiledDraft draft = draft_of(in, cloud.with_points(points, shift, in.passes.most_points));
     draft.completed = round;
     OrderedHash hash;
+    hash.add(before.added);
     for (const std::vector<Vec3>* places : {&points.positions, &points.normals})
         for (const Vec3& p : *places)
             for (const double x : p) hash.add(x);
@@ -107,7 +109,7 @@ void complete_slits(const DraftsInput& in, TiledDraft& draft, Report& report) {
         Report noted;
         const ScratchCloud& cloud = cloud_of(in, draft);
         note_loops(draft.facets.mesh, slits.loops, true, cloud.origin(), cloud.frame(), noted);
-        TiledDraft next = completed_draft(in, cloud, slits.points, CompletedRound::none);
+        TiledDraft next = completed_draft(in, draft, slits.points, CompletedRound::none);
         std::swap(next, draft);
         WholeFacets& before = next.facets;
         FacetFaults faults{};
@@ -137,10 +139,12 @@ CompletedPoints completing_points(const DraftsInput& in, const ScratchCloud& clo
     const FreeSpace free = cloud_free_space(in.cloud, in.passes.most_points, how.most_bytes);
     if (sees_space) *sees_space = !free.empty();
     if (!in.cloud.ranks().is_first()) return {};
-    if (!free.empty())
+    if (!free.empty()) {
+        how.most_bytes -= std::min(how.most_bytes, in.survey.sums.points() * bytes_per_ray);
         how.empty = [&, moved = cloud.origin() - in.cloud.origin()](const Vec3& place) {
             return free.holds(place + moved);
         };
+    }
     return complete_surface(facets, loops, cloud.voxel_size(), how);
 }
 
@@ -165,7 +169,7 @@ TiledCompletion completed_all(const DraftsInput& in, const TiledDraft& draft, co
         completing_points(in, cloud_of(in, draft), mesh, loops, passing, &result.sees_space);
     const bool has_new_cavities = ranks.is_first() && !has_cavity(mesh);
     park();
-    result.draft = completed_draft(in, cloud_of(in, draft), points, CompletedRound::first);
+    result.draft = completed_draft(in, draft, points, CompletedRound::first);
     points = CompletedPoints(); // frees what is not needed any more
     in.make(result.draft, false);
     BoundaryLoops left;
@@ -176,7 +180,7 @@ TiledCompletion completed_all(const DraftsInput& in, const TiledDraft& draft, co
         note_loops(result.draft.facets.mesh, left, true, cloud.origin(), cloud.frame(), result.noted);
         points = completing_points(in, cloud, result.draft.facets.mesh, left, passing);
         result.draft.facets = WholeFacets();
-        result.draft = completed_draft(in, cloud, points, CompletedRound::second);
+        result.draft = completed_draft(in, result.draft, points, CompletedRound::second);
         points = CompletedPoints();
         in.make(result.draft, false);
     }
