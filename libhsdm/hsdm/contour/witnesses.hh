@@ -22,7 +22,8 @@ public:
     /// the two sides of a gap where the facets beside the ring face away from its axis, and else of a wall;
     /// and the stretch of the axis that they stand in holds no point of a bore or rod, though some should lie
     /// there: a tunnel passes a wall like that, and a bridge a gap. At the mouth of a bore all face one way,
-    /// round the foot of a post on a wall they are those of the wall, and gaps beyond it are none of the ring.
+    /// round the foot of a post on a wall they are those of the wall, and gaps beyond it are none of the
+    /// ring.
     bool deny(std::span<const Index> ring, std::span<const Index> beside) const;
 
     /// Do points on all sides of a ring of vertices face its axis, or all face away from it? So they do in a
