@@ -8,6 +8,7 @@
 #include "support/rank_threads.hh"
 #include "support/sample.hh"
 #include "support/scanner.hh"
+#include "support/written.hh"
 
 #include <catch2/catch.hpp>
 
@@ -48,23 +49,12 @@ void check_same_completed(const Reconstruction& whole, const Reconstruction& til
     const Report &one = whole.report, &other = tiles.report;
     CHECK(one.rejected.at("intersections_left") == other.rejected.at("intersections_left"));
     CHECK(one.error.points_to_mesh_max == other.error.points_to_mesh_max);
-    REQUIRE(one.loops.size() == other.loops.size());
-    for (std::size_t l = 0; l < one.loops.size(); ++l) {
-        CHECK(one.loops[l].completed == other.loops[l].completed);
-        CHECK(one.loops[l].length == other.loops[l].length);
-        CHECK(one.loops[l].where == other.loops[l].where);
-    }
+    CHECK(support::difference_of_loops(one, other) == "");
     const auto cavities = [](const Report& report) {
         const auto found = report.rejected.find("facets_of_cavities");
         return found == report.rejected.end() ? 0 : found->second;
     };
     CHECK(cavities(one) == cavities(other));
-}
-
-std::string bytes_of_ply(const auto& write) {
-    const support::Folder folder;
-    write(folder / "mesh");
-    return support::read_file(folder / "mesh");
 }
 
 /// Of one process, in flat arrays too, and of three ranks.
@@ -75,12 +65,9 @@ Reconstruction check_completed_everywhere(const PointCloud& cloud, const Reconst
     CHECK(how.tiles > 1);
     const FlatReconstruction flat = reconstruct_flat_in_tiles(
         [&](const auto& visit) { visit(view_of(cloud)); }, options, tiles_to_complete(9000));
-    const std::string one = bytes_of_ply(
-        [&](const std::string& path) { write_mesh(path, to_polygons(whole.mesh), MeshFormat::ply, {}); });
+    const std::string one = support::ply_of(to_polygons(whole.mesh));
     CHECK(one.find("hsdm_completed") != std::string::npos);
-    CHECK((one == bytes_of_ply([&](const std::string& path) {
-               write_flat(path, flat, MeshFormat::ply, false);
-           }))); // not told: megabytes
+    CHECK((one == support::ply_of(flat))); // not told: megabytes
     check_same_completed(whole, support::reconstruct_by_ranks(3, cloud, options, tiles_to_complete(9000)));
     return whole;
 }

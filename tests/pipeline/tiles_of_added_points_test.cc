@@ -7,6 +7,7 @@
 #include "support/rank_threads.hh"
 #include "support/sample.hh"
 #include "support/uneven.hh"
+#include "support/written.hh"
 
 #include <catch2/catch.hpp>
 
@@ -80,11 +81,7 @@ void check_same_added(const Reconstruction& whole, const Reconstruction& tiles) 
     CHECK(one.rejected.at("normals_turned") == other.rejected.at("normals_turned"));
     CHECK(one.rejected.at("intersections_left") == other.rejected.at("intersections_left"));
     CHECK(one.error.points_to_mesh_max == other.error.points_to_mesh_max);
-    REQUIRE(one.loops.size() == other.loops.size());
-    for (std::size_t l = 0; l < one.loops.size(); ++l) {
-        CHECK(one.loops[l].completed == other.loops[l].completed);
-        CHECK(one.loops[l].length == other.loops[l].length);
-    }
+    CHECK(support::difference_of_loops(one, other) == "");
 }
 
 /// Of one process and of three ranks.
@@ -97,22 +94,13 @@ Reconstruction check_added_everywhere(const PointCloud& cloud, const Reconstruct
     return whole;
 }
 
-std::string bytes_of_file(const auto& write) {
-    const support::Folder folder;
-    write(folder / "mesh");
-    return support::read_file(folder / "mesh");
-}
-
 void check_added_file(const PointCloud& cloud, const ReconstructOptions& options) {
     const PolygonMesh whole = to_polygons(reconstruct(cloud, options).mesh);
     const FlatReconstruction flat = reconstruct_flat_in_tiles(
         [&](const auto& visit) { visit(view_of(cloud)); }, options, added_tiles(6000));
-    const std::string one =
-        bytes_of_file([&](const std::string& path) { write_mesh(path, whole, MeshFormat::ply, {}); });
+    const std::string one = support::ply_of(whole);
     CHECK(one.find("hsdm_completed") != std::string::npos);
-    CHECK((one == bytes_of_file([&](const std::string& path) {
-               write_flat(path, flat, MeshFormat::ply, false);
-           }))); // not told: megabytes
+    CHECK((one == support::ply_of(flat))); // not told: megabytes
 }
 
 } // namespace
